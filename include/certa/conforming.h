@@ -1,0 +1,110 @@
+#pragma once
+// Part I: conforming Delaunay tetrahedral meshes of piecewise linear complexes, and their checker.
+#include <certa/error.h>
+#include <certa/mesh.h>
+#include <certa/run_control.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace certa {
+
+/// Where protecting balls are placed before anything else.
+enum class Protection : std::uint8_t {
+    needed,  ///< nowhere at first; points by mirroring, balls only where that did not end (docs/lazy-protection.md)
+    sharp,   ///< all vertices, and edges where two faces meet at less than 90 degrees (thesis, Part I, 1.4.2)
+    all,     ///< the whole 1-skeleton (thesis, Part I, 1.1-1.3)
+};
+
+struct ConformOptions {
+    Protection protection = Protection::needed;
+    bool gabriel = false;          ///< also empty the diametral ball of every constraint triangle (thesis, Part I, 1.6)
+    double alpha = 0.4;            ///< radius of a protecting ball over the local feature size, in (0, 0.5)
+    bool merge_coplanar = false;   ///< one facet from exactly coplanar neighbours of equal marker
+    bool triangulate = false;      ///< cut non-planar facets into triangles instead of refusing them
+    bool repair = false;           ///< fix what has one obvious meaning, see ConformResult::repairs
+    bool keep_outside = false;     ///< emit region 0 up to the convex hull
+    Length planarity{1e-9, true};  ///< largest distance of a facet's point from the facet's plane
+    Length min_feature{1e-12, true};          ///< stop with Outcome::below_min_feature below this length
+    std::optional<std::uint64_t> max_points;  ///< stop with Outcome::over_budget above this number of vertices
+};
+
+/// Counts and times of one run; every length in the input's unit, every time in seconds.
+struct ConformStatistics {
+    std::size_t input_points = 0, segments = 0, facets = 0;
+    std::size_t missing_segments = 0, missing_facets = 0;  ///< in the Delaunay triangulation of the input points
+    std::size_t steiner_on_segments = 0, steiner_in_facets = 0;
+    std::size_t protecting_balls = 0, restarts = 0;
+    double max_displacement = 0.0;  ///< largest distance of a Steiner point from its segment's line or facet's plane
+    std::vector<std::pair<std::string, double>> stage_seconds;
+};
+
+struct ConformResult {
+    Outcome outcome = Outcome::done;
+    TetMesh mesh;                ///< input points first, unchanged and in order, then Steiner points
+    std::vector<Edge> segments;  ///< all segments: the given ones in order, then the remaining sides of facets
+    std::vector<double> region_attributes;  ///< per region, from its seed, else 0
+    std::vector<Defect> warnings, repairs;
+    std::vector<Defect> obstacles;  ///< unless done: what stopped the run, and where
+    ConformStatistics statistics;
+};
+
+/// Makes the conforming Delaunay tetrahedral mesh of a piecewise linear complex.
+///
+/// Input:      finite, distinct points; facets planar within `planarity` that meet only in common vertices, segments,
+///             isolated segments and isolated points; any angles; open, internal, dangling, nested, non-manifold
+///             welcome. A point that lies exactly on a facet without being listed there is adopted as an isolated point
+///             of it.
+/// Result:     see ConformResult. Regions are numbered from 1 in the order of their lowest input vertex;
+///             region 0 is left out unless `keep_outside`, or nothing bounded exists (a warning says so).
+/// Errors:     InputError with every violation found.
+/// Guarantee:  Outcome::done means that the four promises of docs/conventions.md hold on the doubles of the result;
+///             check_conforming decides them independently.
+/// Cost:       about O(n log n) on real models; deterministic for any number of threads.
+/// Source:     thesis, Part I; the default protection goes beyond it, see docs/lazy-protection.md.
+ConformResult conform(const PiecewiseLinearComplex& complex, const ConformOptions& options = {},
+                      const RunControl& control = {});
+
+/// One PLC facet per polygon of the mesh.
+PiecewiseLinearComplex make_complex(const PolygonMesh& mesh);
+PiecewiseLinearComplex make_complex(const TriangleMesh& mesh);
+
+struct ConformingCheckOptions {
+    bool gabriel = false;
+    bool merge_coplanar =
+        false;  ///< the mesh was made with merge_coplanar: its triangles name the lowest facet of each group
+    Length planarity{1e-9, true};
+    Length deviation{1e-12, true};  ///< largest distance of a vertex from the segment or facet that carries it
+};
+
+/// One broken promise: which, where, and the elements of the mesh that show it.
+struct Violation {
+    std::string promise;  ///< "delaunay", "conforming", "faithful", "labelled", "gabriel", "well-formed"
+    std::vector<ElementRef> elements;
+    Point3 place;
+    std::string message;
+};
+
+struct ConformingCheck {
+    std::vector<Violation> violations;  ///< at most 100 per promise are kept
+    std::size_t violation_count = 0;
+    bool full_hull = false;      ///< the mesh fills its convex hull: Delaunay was proved by local tests
+    double max_deviation = 0.0;  ///< largest distance of a vertex from its segment or facet plane
+    std::size_t tetrahedra_checked = 0, segments_checked = 0, facets_checked = 0;
+    bool ok() const { return violation_count == 0; }
+};
+
+/// Decides whether `mesh` is a conforming Delaunay mesh of `complex`.
+///
+/// Input:      any mesh with constraint triangles labelled by 0-based facet and edges labelled by 0-based segment, the
+///             segments numbered as in ConformResult::segments. Missing edge labels: segments are looked up in the
+///             mesh.
+/// Guarantee:  exact on the doubles given; shares no code with `conform`.
+/// Cost:       O(n log n); deterministic.
+ConformingCheck check_conforming(const TetMesh& mesh, const PiecewiseLinearComplex& complex,
+                                 const ConformingCheckOptions& options = {}, const RunControl& control = {});
+
+}  // namespace certa
