@@ -12,12 +12,19 @@ std::string summary_of(const std::vector<Defect>& defects) {
     constexpr std::size_t shown = 5;
     std::string text;
     for (std::size_t i = 0; i < defects.size() && i < shown; ++i) {
-        if (i > 0) text += '\n';
-        text += name_of(defects[i].kind);
-        text += ": " + defects[i].message;
+        if (i > 0) text.push_back('\n');
+        text.append(name_of(defects[i].kind)).append(": ").append(defects[i].message);
     }
-    if (defects.size() > shown) text += "\n... and " + std::to_string(defects.size() - shown) + " more";
+    if (defects.size() > shown)
+        text.append("\n... and ").append(std::to_string(defects.size() - shown)).append(" more");
     return text;
+}
+
+// Built by appending: g++ 12 warns falsely (-Wrestrict) on `literal + string`.
+std::string text_of(const std::string& path, std::uint64_t line, const std::string& reason) {
+    std::string text = path;
+    if (line > 0) text.append(":").append(std::to_string(line));
+    return text.append(": ").append(reason);
 }
 
 }  // namespace
@@ -48,7 +55,7 @@ InputError::InputError(std::vector<Defect> defects)
     : std::runtime_error(summary_of(defects)), defects_(std::move(defects)) {}
 
 IoError::IoError(std::string path, std::uint64_t line, std::string reason)
-    : std::runtime_error(path + (line > 0 ? ":" + std::to_string(line) : std::string()) + ": " + reason),
+    : std::runtime_error(text_of(path, line, reason)),
       path_(std::move(path)),
       line_(line),
       reason_(std::move(reason)) {}
