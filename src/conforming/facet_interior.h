@@ -12,11 +12,18 @@ namespace certa::conforming {
 /// first to its second end; left is cross(normal, direction) with the normal of the facet's frame.
 enum SideCover : std::uint8_t { cover_left = 1, cover_right = 2 };
 
+struct Sheet {
+    std::uint32_t facet = 0;
+    std::uint8_t cover = 0;
+};
+
 struct FacetInterior {
     /// Per facet, triangles over input points that tile it, counter-clockwise in its frame.
     Rows<std::array<std::uint32_t, 3>> triangles;
     /// Parallel to Complex::facet_sides.values: SideCover bits.
     std::vector<std::uint8_t> side_covers;
+    /// Per segment: the facets that have it as a side, in order, and where they lie.
+    Rows<Sheet> sheets;
 };
 
 /// Triangulates every facet in its frame: triangle facets directly, others by a constrained Delaunay triangulation
