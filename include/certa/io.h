@@ -16,6 +16,7 @@ enum class Encoding : unsigned char { automatic, ascii, binary };
 /// The format that a file name's extension stands for, if any.
 std::optional<Format> format_of(std::string_view path);
 const char* name_of(Format format);
+std::optional<Format> format_named(std::string_view name);  ///< inverse of name_of
 
 struct ReadOptions {
     std::optional<Format> format;  ///< by extension, else by content, when empty; needed for "-"
@@ -41,16 +42,22 @@ void write_document(const std::string& path, const MeshDocument& document, const
 MeshDocument parse_document(std::string_view text, Format format, const std::string& name = "input");
 std::string format_document(const MeshDocument& document, Format format, const WriteOptions& options = {});
 
-/// Which numbers a volume file carries as the one "reference" of each element.
-enum class Reference : unsigned char { id, marker };
-
-/// The document of a conforming mesh: tetrahedra with region, constraint triangles with facet, constraint edges with
-/// segment (1-based), named arrays "region", "facet", "segment", and "marker" of `complex`; field "marker" on each kind
-/// is what `reference` selects for formats that carry a single number.
+/// The document of a conforming mesh: tetrahedra, constraint triangles (polygons) and constraint edges (segments).
+///
+/// Result: integer fields "region" of tetrahedra, "facet" of polygons and "segment" of segments (1-based, 0: none);
+///         markers of the complex's points, facets and segments on what lies on them (segments beyond the given ones
+///         have none); "source_kind" (0 input, 1 segment, 2 facet) and "source_index" (1-based) of vertices;
+///         "region_attribute" of tetrahedra where any is not 0. `reference` selects what formats with one number per
+///         element carry. Arrays that the mesh does not have are left out.
+/// Errors: InputError index_out_of_range for labels beyond the complex.
 MeshDocument make_document(const TetMesh& mesh, const PiecewiseLinearComplex& complex, Reference reference,
                            const std::vector<double>& region_attributes = {});
 
 /// The mesh that a volume file describes: the inverse of make_document for the labels that the file carries.
+///
+/// Input:  polygons must be triangles. Labels come from the named fields, else from the one number per element
+///         ("references": markers); what is not positive is no label (no_index; region 0).
+/// Errors: IoError that names the first polygon that is no triangle.
 TetMesh make_tet_mesh(const MeshDocument& document);
 
 }  // namespace certa

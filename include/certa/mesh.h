@@ -4,6 +4,7 @@
 #include <certa/types.h>
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -101,14 +102,25 @@ struct Field {
     std::variant<std::vector<double>, std::vector<std::int64_t>> values;
 };
 
+/// Which numbers a format that has room for one number per element carries: ids or the user's markers.
+enum class Reference : std::uint8_t { id, marker };
+
 /// Everything that a mesh file can say, as it says it: what readers return and writers take (see io.h).
-/// `complex` carries points, polygons, segments, markers, holes and region seeds; `facet_offsets` groups polygons
-/// into facets (one polygon per facet in surface formats); `tetrahedra` are those of volume formats.
-/// Markers that a volume format attaches to elements ("references") are integer fields named "marker".
+/// `complex` carries points, polygons, segments, their markers, holes and region seeds; `facet_offsets` groups polygons
+/// into facets (one polygon per facet in all formats but TetGen's .poly); `tetrahedra` are those of volume formats.
+/// Numbers that a volume format attaches to points, segments and polygons ("references") are markers of the complex,
+/// those of tetrahedra the integer field "marker". An array of zero markers says nothing: readers leave it empty.
+/// Labels are integer fields that count from 1, 0 meaning none: "region" of tetrahedra, "facet" of polygons, "segment"
+/// of segments.
 struct MeshDocument {
     PiecewiseLinearComplex complex;
     std::vector<Tetrahedron> tetrahedra;
     std::vector<Field> fields;
+    /// Set: a format with one number per element writes the labels (id) or the markers, and leaves the other labels
+    /// out. Empty: a document with both is refused by such a format.
+    std::optional<Reference> reference;
+    /// What the reader left out of the document, a sentence each ("normals are left out").
+    std::vector<std::string> notes;
 };
 
 }  // namespace certa
