@@ -1,0 +1,241 @@
+// The tables of options and what is derived from them: parsing, printing, help.
+// Defaults are read off a default-constructed aggregate, so that they stand in one place only: the public header.
+// Numbers go through from_chars and to_chars: exact, and deaf to the locale.
+#include "frontend/option_table.h"
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <concepts>
+#include <system_error>
+
+namespace certa::frontend {
+namespace {
+
+constexpr double infinity = std::numeric_limits<double>::infinity();
+constexpr Bounds any_length{0.0, infinity, false, true};
+
+constexpr std::array<std::string_view, 3> protection_names{"needed", "sharp", "all"};
+
+constexpr std::array conform_table{
+    Option<ConformOptions>{
+        "protection",
+        "protect",
+        Choice<ConformOptions>{protection_names,
+                               [](const ConformOptions& o) { return static_cast<std::size_t>(o.protection); },
+                               [](ConformOptions& o, std::size_t i) { o.protection = static_cast<Protection>(i); }},
+        {},
+        "where protecting balls are placed before anything else: nowhere until needed, at sharp "
+        "edges, or along all edges"},
+    Option<ConformOptions>{"gabriel",
+                           "gabriel",
+                           &ConformOptions::gabriel,
+                           {},
+                           "also empty the diametral ball of every constraint triangle"},
+    Option<ConformOptions>{"alpha",
+                           "alpha",
+                           &ConformOptions::alpha,
+                           {0.0, 0.5, true, true},
+                           "radius of a protecting ball over the local feature size"},
+    Option<ConformOptions>{"merge_coplanar",
+                           "merge-coplanar",
+                           &ConformOptions::merge_coplanar,
+                           {},
+                           "make one facet of exactly coplanar neighbours with equal markers"},
+    Option<ConformOptions>{"triangulate",
+                           "triangulate",
+                           &ConformOptions::triangulate,
+                           {},
+                           "cut non-planar facets into triangles instead of refusing them"},
+    Option<ConformOptions>{
+        "repair", "repair", &ConformOptions::repair, {}, "fix what has one obvious meaning, and say what was done"},
+    Option<ConformOptions>{
+        "keep_outside", "keep-outside", &ConformOptions::keep_outside, {}, "emit region 0 too, up to the convex hull"},
+    Option<ConformOptions>{"planarity", "planarity", &ConformOptions::planarity, any_length,
+                           "largest distance of a facet's point from the facet's plane"},
+    Option<ConformOptions>{"min_feature", "min-feature", &ConformOptions::min_feature, any_length,
+                           "stop, naming the elements, where something shorter would be made"},
+    Option<ConformOptions>{"max_points",
+                           "max-points",
+                           &ConformOptions::max_points,
+                           {1.0, infinity, false, true},
+                           "stop above this number of vertices"},
+};
+
+constexpr std::array check_table{
+    Option<ConformingCheckOptions>{"gabriel",
+                                   "gabriel",
+                                   &ConformingCheckOptions::gabriel,
+                                   {},
+                                   "also check that the diametral ball of every constraint triangle is empty"},
+    Option<ConformingCheckOptions>{"merge_coplanar",
+                                   "merge-coplanar",
+                                   &ConformingCheckOptions::merge_coplanar,
+                                   {},
+                                   "the mesh was made with --merge-coplanar"},
+    Option<ConformingCheckOptions>{"planarity", "planarity", &ConformingCheckOptions::planarity, any_length,
+                                   "largest distance of a facet's point from the facet's plane"},
+    Option<ConformingCheckOptions>{"deviation", "deviation", &ConformingCheckOptions::deviation, any_length,
+                                   "largest distance of a vertex from the segment or facet that carries it"},
+};
+
+std::string quoted(std::string_view text) { return std::string("'").append(text).append("'"); }
+
+[[noreturn]] void refuse(std::string_view name, std::string_view text, std::string_view expected) {
+    throw OptionError(std::string(name).append(": ").append(quoted(text)).append(" is not ").append(expected));
+}
+
+void require_in_bounds(std::string_view name, std::string_view text, const Bounds& bounds, double value) {
+    if (bounds.contains(value)) return;
+    throw OptionError(
+        std::string(name).append(": ").append(text).append(" is out of range; allowed is ").append(text_of(bounds)));
+}
+
+bool is_bounded(const Bounds& bounds) { return bounds.low > -infinity || bounds.high < infinity; }
+
+std::string flag_of(std::string_view flag) { return std::string("--").append(flag); }
+
+}  // namespace
+
+std::span<const Option<ConformOptions>> conform_options() { return conform_table; }
+std::span<const Option<ConformingCheckOptions>> conforming_check_options() { return check_table; }
+
+double parse_number(std::string_view name, std::string_view text) {
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        refuse(name, text, "a number");
+    return value;
+}
+
+Length parse_length(std::string_view name, std::string_view text) {
+    const bool relative = text.ends_with('%');
+    const std::string_view digits = relative ? text.substr(0, text.size() - 1) : text;
+    double value = 0.0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+        refuse(name, text, "a length: a number in the input's unit, or a percentage of the diagonal such as 2%");
+    return {relative ? value / 100.0 : value, relative};
+}
+
+std::uint64_t parse_count(std::string_view name, std::string_view text) {
+    std::uint64_t value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size()) refuse(name, text, "a whole number");
+    return value;
+}
+
+std::string text_of(double value) {
+    std::array<char, 32> buffer;
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return {buffer.data(), end};
+}
+
+std::string text_of(const Length& length) {
+    return length.relative_to_diagonal ? text_of(length.value * 100.0).append("%") : text_of(length.value);
+}
+
+std::string text_of(const Bounds& bounds) {
+    if (bounds.high == infinity)
+        return std::string(bounds.low_open ? "above " : "at least ").append(text_of(bounds.low));
+    std::string text = bounds.low_open ? "(" : "[";
+    text.append(text_of(bounds.low)).append(", ").append(text_of(bounds.high));
+    return text.append(bounds.high_open ? ")" : "]");
+}
+
+template <class Options>
+void set_option(const Option<Options>& option, Options& options, std::string_view text) {
+    const std::string name = flag_of(option.flag);
+    std::visit(
+        [&](const auto& member) {
+            using Kind = std::decay_t<decltype(member)>;
+            if constexpr (std::same_as<Kind, bool Options::*>) {
+                if (!text.empty()) refuse(name, text, "expected: this option takes no value");
+                options.*member = true;
+            } else if constexpr (std::same_as<Kind, double Options::*>) {
+                const double value = parse_number(name, text);
+                require_in_bounds(name, text, option.bounds, value);
+                options.*member = value;
+            } else if constexpr (std::same_as<Kind, Length Options::*>) {
+                const Length value = parse_length(name, text);
+                require_in_bounds(name, text, option.bounds, value.value);
+                options.*member = value;
+            } else if constexpr (std::same_as<Kind, std::optional<std::uint64_t> Options::*>) {
+                const std::uint64_t value = parse_count(name, text);
+                require_in_bounds(name, text, option.bounds, static_cast<double>(value));
+                options.*member = value;
+            } else {
+                for (std::size_t i = 0; i < member.names.size(); ++i)
+                    if (member.names[i] == text) return member.set(options, i);
+                refuse(name, text, "one of " + placeholder_of(option));
+            }
+        },
+        option.member);
+}
+
+template <class Options>
+std::string value_of(const Option<Options>& option, const Options& options) {
+    return std::visit(
+        [&](const auto& member) -> std::string {
+            using Kind = std::decay_t<decltype(member)>;
+            if constexpr (std::same_as<Kind, bool Options::*>) {
+                return options.*member ? "on" : "off";
+            } else if constexpr (std::same_as<Kind, std::optional<std::uint64_t> Options::*>) {
+                return options.*member ? std::to_string(*(options.*member)) : std::string();
+            } else if constexpr (std::same_as<Kind, Choice<Options>>) {
+                return std::string(member.names[member.get(options)]);
+            } else {
+                return text_of(options.*member);
+            }
+        },
+        option.member);
+}
+
+template <class Options>
+std::string placeholder_of(const Option<Options>& option) {
+    return std::visit(
+        [&](const auto& member) -> std::string {
+            using Kind = std::decay_t<decltype(member)>;
+            if constexpr (std::same_as<Kind, bool Options::*>)
+                return {};
+            else if constexpr (std::same_as<Kind, double Options::*>)
+                return "NUMBER";
+            else if constexpr (std::same_as<Kind, Length Options::*>)
+                return "LENGTH";
+            else if constexpr (std::same_as<Kind, std::optional<std::uint64_t> Options::*>)
+                return "COUNT";
+            else {
+                std::string text;
+                for (const std::string_view name : member.names) text.append(text.empty() ? "" : "|").append(name);
+                return text;
+            }
+        },
+        option.member);
+}
+
+template <class Options>
+std::string help_of(const Option<Options>& option) {
+    std::string text(option.help);
+    const bool is_flag = std::holds_alternative<bool Options::*>(option.member);
+    const bool is_length = std::holds_alternative<Length Options::*>(option.member);
+    if (is_flag) return text;
+    text.append(" (");
+    if (is_length)
+        text.append("number or % of the diagonal; ");
+    else if (is_bounded(option.bounds))
+        text.append(text_of(option.bounds)).append("; ");
+    const std::string value = value_of(option, Options{});
+    if (value.empty()) return text.append("no limit)");
+    return text.append("default ").append(value).append(")");
+}
+
+template void set_option(const Option<ConformOptions>&, ConformOptions&, std::string_view);
+template std::string value_of(const Option<ConformOptions>&, const ConformOptions&);
+template std::string placeholder_of(const Option<ConformOptions>&);
+template std::string help_of(const Option<ConformOptions>&);
+template void set_option(const Option<ConformingCheckOptions>&, ConformingCheckOptions&, std::string_view);
+template std::string value_of(const Option<ConformingCheckOptions>&, const ConformingCheckOptions&);
+template std::string placeholder_of(const Option<ConformingCheckOptions>&);
+template std::string help_of(const Option<ConformingCheckOptions>&);
+
+}  // namespace certa::frontend

@@ -1,0 +1,86 @@
+#pragma once
+// The options of every verb, once: name, unit, default, bounds, help. The command's help, its parsing and its report
+// are made from these tables; so will be the signatures of the Python module.
+#include <certa/conforming.h>
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <variant>
+
+namespace certa::frontend {
+
+/// A text that is no value of the option: wrong form, out of range, unknown choice. Its message names the option.
+class OptionError : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// An interval of allowed numbers.
+struct Bounds {
+    double low = -std::numeric_limits<double>::infinity();
+    double high = std::numeric_limits<double>::infinity();
+    bool low_open = false;
+    bool high_open = false;
+    bool contains(double value) const {
+        return (low_open ? value > low : value >= low) && (high_open ? value < high : value <= high);
+    }
+};
+
+/// One of several names, stored in Options as an enumeration.
+template <class Options>
+struct Choice {
+    std::span<const std::string_view> names;
+    std::size_t (*get)(const Options&);
+    void (*set)(Options&, std::size_t);
+};
+
+template <class Options>
+using Member = std::variant<bool Options::*, double Options::*, Length Options::*,
+                            std::optional<std::uint64_t> Options::*, Choice<Options>>;
+
+template <class Options>
+struct Option {
+    std::string_view name;  ///< in C++, JSON and Python
+    std::string_view flag;  ///< on the command line, without the dashes
+    Member<Options> member;
+    Bounds bounds;
+    std::string_view help;  ///< a phrase; unit, default and bounds are added by `help_of`
+};
+
+std::span<const Option<ConformOptions>> conform_options();
+std::span<const Option<ConformingCheckOptions>> conforming_check_options();
+
+/// "12.5" or "2%" (of the bounding box's diagonal). `name` stands for the option in the message.
+Length parse_length(std::string_view name, std::string_view text);
+double parse_number(std::string_view name, std::string_view text);
+std::uint64_t parse_count(std::string_view name, std::string_view text);
+
+/// The shortest text that reads back as the same number; independent of any locale.
+std::string text_of(double value);
+std::string text_of(const Length& length);
+std::string text_of(const Bounds& bounds);
+
+/// Sets one option from text. Flags take no text: an empty text sets them.
+///
+/// Errors: OptionError.
+template <class Options>
+void set_option(const Option<Options>& option, Options& options, std::string_view text);
+
+/// The value as text; empty for "automatic".
+template <class Options>
+std::string value_of(const Option<Options>& option, const Options& options);
+
+/// What the command's help prints in place of the value: "NUMBER", "LENGTH", "needed|sharp|all"; empty for flags.
+template <class Options>
+std::string placeholder_of(const Option<Options>& option);
+
+/// The help phrase with unit, bounds and default.
+template <class Options>
+std::string help_of(const Option<Options>& option);
+
+}  // namespace certa::frontend
