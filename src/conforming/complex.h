@@ -46,6 +46,9 @@ struct Complex {
     std::vector<std::int32_t> facet_markers;    // one per facet
     std::vector<std::int32_t> segment_markers;  // one per segment; 0 where the input gives none
 
+    std::vector<std::uint8_t> dropped_segments;  // empty, or one per segment: 1 where merging took a side away
+    bool is_dropped(std::uint32_t segment) const { return !dropped_segments.empty() && dropped_segments[segment] != 0; }
+
     // Derived incidences.
     Rows<std::uint32_t> point_segments;  // segments that end at a point
     Rows<std::uint32_t> segment_facets;  // facets that have a segment as a side

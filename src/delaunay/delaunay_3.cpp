@@ -1,0 +1,298 @@
+// Delaunay3 on top of CGAL's Delaunay_triangulation_3 with exact predicates.
+// Cells carry the marks of their four faces on both sides; after an insertion the new cells fetch theirs from the
+// neighbours across the boundary of the hole, so marks follow faces for as long as these exist.
+// Star walks stamp cells instead of collecting them in sets: queries allocate nothing, and are for one thread.
+#include "delaunay/delaunay_3.h"
+
+#include <CGAL/Delaunay_triangulation_3.h>
+#include <CGAL/Delaunay_triangulation_cell_base_3.h>
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/Triangulation_cell_base_with_info_3.h>
+#include <CGAL/Triangulation_vertex_base_with_info_3.h>
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+#include "core/assert.h"
+
+namespace certa::delaunay {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+
+struct CellInfo {
+    std::array<std::uint32_t, 4> marks{no_index, no_index, no_index, no_index};
+    mutable std::uint32_t stamp = 0;
+    std::uint32_t component = no_index;
+};
+
+using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<std::uint32_t, Kernel>;
+using CellBase =
+    CGAL::Triangulation_cell_base_with_info_3<CellInfo, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
+using Structure = CGAL::Triangulation_data_structure_3<VertexBase, CellBase>;
+using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, Structure>;
+using CellHandle = Triangulation::Cell_handle;
+using VertexHandle = Triangulation::Vertex_handle;
+using Facet = Triangulation::Facet;
+
+Kernel::Point_3 to_cgal(const Point3& p) { return {p.x, p.y, p.z}; }
+
+}  // namespace
+
+struct Delaunay3::Impl {
+    Triangulation triangulation;
+    std::vector<VertexHandle> handles;
+    mutable std::uint32_t stamp = 0;
+    mutable std::vector<CellHandle> stack;
+
+    ConflictZone zone;
+    Point3 place;
+    std::vector<Facet> hole;
+    std::vector<CellHandle> conflict;
+    std::vector<Facet> inner;
+
+    // A cell with a and b, or none. Walks the star of a.
+    CellHandle find_cell(VertexHandle a, VertexHandle b) const {
+        ++stamp;
+        stack.clear();
+        stack.push_back(a->cell());
+        a->cell()->info().stamp = stamp;
+        while (!stack.empty()) {
+            const CellHandle cell = stack.back();
+            stack.pop_back();
+            if (cell->has_vertex(b)) return cell;
+            for (int i = 0; i < 4; ++i) {
+                if (cell->vertex(i) == a) continue;
+                const CellHandle next = cell->neighbor(i);
+                if (next->info().stamp == stamp) continue;
+                next->info().stamp = stamp;
+                stack.push_back(next);
+            }
+        }
+        return {};
+    }
+
+    // Face abc as (cell, index), or a null cell.
+    Facet find_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+        const VertexHandle va = handles[a], vb = handles[b], vc = handles[c];
+        const CellHandle start = find_cell(va, vb);
+        if (start == CellHandle()) return {};
+        auto around = triangulation.incident_cells(start, start->index(va), start->index(vb));
+        const auto begin = around;
+        do {
+            const CellHandle cell = around;
+            int k = 0;
+            if (cell->has_vertex(vc, k)) {
+                return {cell, 6 - cell->index(va) - cell->index(vb) - k};
+            }
+        } while (++around != begin);
+        return {};
+    }
+
+    std::uint32_t id_of(VertexHandle v) const { return triangulation.is_infinite(v) ? no_index : v->info(); }
+
+    void fill_zone() {
+        ++stamp;
+        zone.vertices.clear();
+        zone.edges.clear();
+        zone.removed_marks.clear();
+        for (const CellHandle cell : conflict) {
+            std::array<std::uint32_t, 4> ids;
+            for (int i = 0; i < 4; ++i) ids[i] = id_of(cell->vertex(i));
+            for (int i = 0; i < 4; ++i) {
+                if (ids[i] == no_index) continue;
+                zone.vertices.push_back(ids[i]);
+                for (int j = i + 1; j < 4; ++j) {
+                    if (ids[j] != no_index) zone.edges.push_back({std::min(ids[i], ids[j]), std::max(ids[i], ids[j])});
+                }
+            }
+        }
+        std::sort(zone.vertices.begin(), zone.vertices.end());
+        zone.vertices.erase(std::unique(zone.vertices.begin(), zone.vertices.end()), zone.vertices.end());
+        for (const Facet& face : inner) {
+            const std::uint32_t mark = face.first->info().marks[face.second];
+            if (mark != no_index) zone.removed_marks.push_back(mark);
+        }
+    }
+
+    void release_conflicts() {
+        for (const CellHandle cell : conflict) cell->tds_data().clear();
+        conflict.clear();
+        hole.clear();
+        inner.clear();
+    }
+};
+
+Delaunay3::Delaunay3() : impl_(std::make_unique<Impl>()) {}
+Delaunay3::~Delaunay3() = default;
+Delaunay3::Delaunay3(Delaunay3&&) noexcept = default;
+Delaunay3& Delaunay3::operator=(Delaunay3&&) noexcept = default;
+
+void Delaunay3::build(std::span<const Point3> points) {
+    std::vector<std::pair<Kernel::Point_3, std::uint32_t>> input;
+    input.reserve(points.size());
+    for (const Point3& p : points) input.emplace_back(to_cgal(p), static_cast<std::uint32_t>(input.size()));
+    impl_->triangulation.clear();
+    impl_->triangulation.insert(input.begin(), input.end());
+    CERTA_ASSERT(impl_->triangulation.number_of_vertices() == points.size());
+    positions_.assign(points.begin(), points.end());
+    impl_->handles.resize(points.size());
+    for (const VertexHandle v : impl_->triangulation.finite_vertex_handles()) impl_->handles[v->info()] = v;
+}
+
+bool Delaunay3::is_solid() const { return impl_->triangulation.dimension() == 3; }
+
+const ConflictZone& Delaunay3::find_conflicts(const Point3& place, std::uint32_t near) {
+    Impl& s = *impl_;
+    s.release_conflicts();
+    s.place = place;
+    const Kernel::Point_3 p = to_cgal(place);
+    Triangulation::Locate_type type{};
+    int li = 0, lj = 0;
+    const CellHandle cell = s.triangulation.locate(p, type, li, lj, s.handles[near]->cell());
+    s.zone.occupied = type == Triangulation::VERTEX;
+    if (s.zone.occupied) {
+        s.zone.vertices.assign(1, cell->vertex(li)->info());
+        s.zone.edges.clear();
+        s.zone.removed_marks.clear();
+        return s.zone;
+    }
+    s.triangulation.find_conflicts(p, cell, std::back_inserter(s.hole), std::back_inserter(s.conflict),
+                                   std::back_inserter(s.inner));
+    s.fill_zone();
+    return s.zone;
+}
+
+std::uint32_t Delaunay3::insert_in_conflicts() {
+    Impl& s = *impl_;
+    CERTA_ASSERT(!s.conflict.empty());
+    const Facet begin = s.hole.front();
+    const VertexHandle v = s.triangulation.insert_in_hole(to_cgal(s.place), s.conflict.begin(), s.conflict.end(),
+                                                          begin.first, begin.second);
+    s.conflict.clear();  // these cells are gone
+    s.hole.clear();
+    s.inner.clear();
+    const auto id = static_cast<std::uint32_t>(positions_.size());
+    v->info() = id;
+    s.handles.push_back(v);
+    positions_.push_back(s.place);
+    std::vector<CellHandle>& cells = s.stack;
+    cells.clear();
+    s.triangulation.incident_cells(v, std::back_inserter(cells));
+    for (const CellHandle cell : cells) {
+        const int i = cell->index(v);
+        const CellHandle outside = cell->neighbor(i);
+        cell->info().marks = {no_index, no_index, no_index, no_index};
+        cell->info().marks[i] = outside->info().marks[outside->index(cell)];
+    }
+    return id;
+}
+
+bool Delaunay3::has_edge(std::uint32_t a, std::uint32_t b) const {
+    return impl_->find_cell(impl_->handles[a], impl_->handles[b]) != CellHandle();
+}
+
+bool Delaunay3::has_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    return impl_->find_face(a, b, c).first != CellHandle();
+}
+
+void Delaunay3::find_link(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& link) const {
+    link.clear();
+    const VertexHandle va = impl_->handles[a], vb = impl_->handles[b];
+    const CellHandle start = impl_->find_cell(va, vb);
+    if (start == CellHandle()) return;
+    auto around = impl_->triangulation.incident_facets(start, start->index(va), start->index(vb));
+    const auto begin = around;
+    do {
+        const Facet face = *around;
+        for (int i = 0; i < 4; ++i) {
+            const VertexHandle v = face.first->vertex(i);
+            if (i != face.second && v != va && v != vb && !impl_->triangulation.is_infinite(v))
+                link.push_back(v->info());
+        }
+    } while (++around != begin);
+}
+
+bool Delaunay3::find_apexes(std::uint32_t a, std::uint32_t b, std::uint32_t c,
+                            std::array<std::uint32_t, 2>& apexes) const {
+    const Facet face = impl_->find_face(a, b, c);
+    if (face.first == CellHandle()) return false;
+    const Facet mirror = impl_->triangulation.mirror_facet(face);
+    apexes = {impl_->id_of(face.first->vertex(face.second)), impl_->id_of(mirror.first->vertex(mirror.second))};
+    return true;
+}
+
+bool Delaunay3::mark_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t mark) {
+    const Facet face = impl_->find_face(a, b, c);
+    if (face.first == CellHandle()) return false;
+    const Facet mirror = impl_->triangulation.mirror_facet(face);
+    face.first->info().marks[face.second] = mark;
+    mirror.first->info().marks[mirror.second] = mark;
+    return true;
+}
+
+void Delaunay3::clear_marks() {
+    for (const CellHandle cell : impl_->triangulation.all_cell_handles()) {
+        cell->info().marks = {no_index, no_index, no_index, no_index};
+    }
+}
+
+Delaunay3::Cells Delaunay3::collect_cells() const {
+    const Triangulation& t = impl_->triangulation;
+    for (const CellHandle cell : t.all_cell_handles()) cell->info().component = no_index;
+    // Seeds in the order of vertices make the numbering independent of the order of cells in memory.
+    Cells cells;
+    std::vector<CellHandle>& stack = impl_->stack;
+    const auto flood = [&](CellHandle seed, std::uint32_t number) {
+        stack.assign(1, seed);
+        seed->info().component = number;
+        while (!stack.empty()) {
+            const CellHandle cell = stack.back();
+            stack.pop_back();
+            for (int i = 0; i < 4; ++i) {
+                const CellHandle next = cell->neighbor(i);
+                if (cell->info().marks[i] != no_index || next->info().component != no_index) continue;
+                next->info().component = number;
+                stack.push_back(next);
+            }
+        }
+    };
+    flood(t.infinite_cell(), 0);
+    // Infinite cells separated by marked hull faces are connected through infinity all the same: walls lie between a
+    // finite and an infinite cell, and infinite cells touch each other across infinite faces, which carry no marks.
+    std::vector<CellHandle> star;
+    for (const VertexHandle v : impl_->handles) {
+        star.clear();
+        t.incident_cells(v, std::back_inserter(star));
+        std::vector<std::pair<std::array<std::uint32_t, 4>, CellHandle>> fresh;
+        for (const CellHandle cell : star) {
+            if (cell->info().component != no_index) continue;
+            std::array<std::uint32_t, 4> key;
+            for (int i = 0; i < 4; ++i) key[i] = cell->vertex(i)->info();
+            std::sort(key.begin(), key.end());
+            fresh.emplace_back(key, cell);
+        }
+        std::sort(fresh.begin(), fresh.end());
+        for (const auto& [key, cell] : fresh) {
+            if (cell->info().component == no_index) flood(cell, cells.component_count++);
+        }
+    }
+    for (const CellHandle cell : t.finite_cell_handles()) {
+        std::array<std::uint32_t, 4> ids;
+        for (int i = 0; i < 4; ++i) ids[i] = cell->vertex(i)->info();
+        cells.vertices.push_back(ids);
+        cells.components.push_back(cell->info().component);
+    }
+    return cells;
+}
+
+std::uint32_t Delaunay3::locate_component(const Point3& place) const {
+    Triangulation::Locate_type type{};
+    int li = 0, lj = 0;
+    const CellHandle cell = impl_->triangulation.locate(to_cgal(place), type, li, lj);
+    if (type == Triangulation::FACET && cell->info().marks[li] != no_index) return no_index;
+    return cell->info().component;
+}
+
+}  // namespace certa::delaunay

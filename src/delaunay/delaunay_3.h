@@ -1,0 +1,73 @@
+#pragma once
+// The three-dimensional Delaunay triangulation behind indices: exact presence of edges and faces, the conflict zone of
+// a point before and after its insertion, and marks on faces that survive insertions elsewhere.
+#include <certa/run_control.h>
+#include <certa/types.h>
+
+#include <array>
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+namespace certa::delaunay {
+
+/// What the insertion of a point would remove. Valid until the next call that changes or searches conflicts.
+struct ConflictZone {
+    bool occupied = false;  ///< a vertex is already exactly there: `vertices` holds it alone, nothing else is set
+    std::vector<std::uint32_t> vertices;              ///< of the zone's cells, each once
+    std::vector<std::array<std::uint32_t, 2>> edges;  ///< of the zone's cells, repeated; some survive
+    std::vector<std::uint32_t> removed_marks;         ///< marks of the faces that disappear
+};
+
+class Delaunay3 {
+public:
+    Delaunay3();
+    ~Delaunay3();
+    Delaunay3(Delaunay3&&) noexcept;
+    Delaunay3& operator=(Delaunay3&&) noexcept;
+
+    /// Triangulates distinct points; ids are their indices. Cost: O(n log n) on surfaces in practice.
+    void build(std::span<const Point3> points);
+
+    bool is_solid() const;  ///< the points span space
+    std::size_t size() const { return positions_.size(); }
+    const Point3& position(std::uint32_t vertex) const { return positions_[vertex]; }
+    const std::vector<Point3>& positions() const { return positions_; }
+
+    /// The conflict zone of a point; `near` is a vertex to start the search from.
+    const ConflictZone& find_conflicts(const Point3& place, std::uint32_t near);
+    /// Inserts the point of the last find_conflicts (not occupied) and returns its id.
+    std::uint32_t insert_in_conflicts();
+
+    bool has_edge(std::uint32_t a, std::uint32_t b) const;
+    bool has_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+    /// The third vertices of the faces around edge ab; empty where ab is no edge.
+    void find_link(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& link) const;
+    /// For a face: the fourth vertices of the two cells on it (no_index outside the hull); false where it is none.
+    bool find_apexes(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::array<std::uint32_t, 2>& apexes) const;
+
+    /// Marks face abc, which must be present, with a number below no_index; returns false where it is absent.
+    bool mark_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t mark);
+    void clear_marks();
+
+    /// Calls `visit` for every finite cell once with its vertices (positively oriented) and an index from 0.
+    /// components(): per cell, the number of its connected component when marked faces are walls; 0 is the one at
+    /// infinity, the others follow in the order of their lowest vertex.
+    struct Cells {
+        std::vector<std::array<std::uint32_t, 4>> vertices;
+        std::vector<std::uint32_t> components;
+        std::uint32_t component_count = 1;
+    };
+    Cells collect_cells() const;
+    /// The component (as in `cells`) that holds a place; no_index on a marked face.
+    std::uint32_t locate_component(const Point3& place) const;
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+    std::vector<Point3> positions_;
+};
+
+}  // namespace certa::delaunay
