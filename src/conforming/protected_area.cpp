@@ -19,11 +19,10 @@
 
 #include "conforming/extended_vector.h"
 #include "conforming/flat_facet.h"
+#include "exact/orientation.h"
 
 namespace certa::conforming {
 namespace {
-
-using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 
 constexpr long double pi = std::numbers::pi_v<long double>;
 // Isosceles angles stay below 90 degrees by this much, so that rounding cannot make them right or obtuse.
@@ -302,20 +301,20 @@ private:
         const Projection projection(complex_.frames[f].normal);
         const auto flat = [&](std::uint32_t id) {
             const Point2 p = projection(complex_.points[id]);
-            return Kernel::Point_2(p.x, p.y);
+            return exact::Point2{p.x, p.y};
         };
-        const Kernel::Point_2 origin = flat(v);
+        const exact::Point2 origin = flat(v);
         const auto turn = [&](const Spoke& a, const Spoke& b) {
-            return CGAL::orientation(origin, flat(far_end(a)), flat(far_end(b)));
+            return exact::orient2d(origin, flat(far_end(a)), flat(far_end(b)));
         };
         if (spokes.size() > 2) {  // counter-clockwise, starting with the upper half-plane
             const auto lower = [&](const Spoke& a) {
                 const auto p = flat(far_end(a));
-                return p.y() < origin.y() || (p.y() == origin.y() && p.x() < origin.x());
+                return p.y < origin.y || (p.y == origin.y && p.x < origin.x);
             };
             std::sort(spokes.begin(), spokes.end(), [&](const Spoke& a, const Spoke& b) {
                 const bool below_a = lower(a), below_b = lower(b);
-                return below_a != below_b ? below_b : turn(a, b) == CGAL::LEFT_TURN;
+                return below_a != below_b ? below_b : turn(a, b) > 0;
             });
         }
         for (std::size_t i = 0; i < spokes.size(); ++i) {
@@ -331,7 +330,7 @@ private:
             long double angle = std::atan2(length(cross(a, b)), dot(a, b));
             if (spokes.size() == 1) {
                 angle = 2 * pi;
-            } else if (turn(from, to) == CGAL::RIGHT_TURN) {
+            } else if (turn(from, to) < 0) {
                 angle = 2 * pi - angle;
             }
             add_sector(f, ball, end_ray(from.segment, f, left, v), end_ray(to.segment, f, right, v), normalized(a),
