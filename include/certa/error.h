@@ -34,6 +34,9 @@ enum class DefectKind : std::uint8_t {
     conflicting_region_seeds,
     empty_input,
     option_out_of_range,
+    coordinate_out_of_range,  // finite, but too large or too close together for exact work in doubles
+    element_outside_facet,    // an isolated segment or point of a facet lies outside it
+    point_on_facet,           // exactly on a facet that does not list it: adopted, a note
 };
 const char* name_of(DefectKind kind);
 

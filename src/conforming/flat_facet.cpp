@@ -139,9 +139,8 @@ Projection::Projection(const Point3& normal) {
 }
 
 Point2 Projection::operator()(const Point3& p) const {
-    const double a = axis_ == 0 ? p.y : axis_ == 1 ? p.z : p.x;
-    const double b = axis_ == 0 ? p.z : axis_ == 1 ? p.x : p.y;
-    return flipped_ ? Point2{b, a} : Point2{a, b};
+    const Point2 q = exact::drop_axis(p, axis_);
+    return flipped_ ? Point2{q.y, q.x} : q;
 }
 
 FlatFacet list_sides(const PiecewiseLinearComplex& input, std::uint32_t facet) {

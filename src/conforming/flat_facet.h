@@ -7,12 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "exact/orientation.h"
+
 namespace certa::conforming {
 
-struct Point2 {
-    double x = 0.0, y = 0.0;
-    friend bool operator==(const Point2&, const Point2&) = default;
-};
+using exact::Point2;
 
 /// Drops the coordinate along which a plane is seen largest; what is left is counter-clockwise about the normal.
 /// Nearly equal normals choose the same axis: ties up to 1e-6 go to x, then y.

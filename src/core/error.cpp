@@ -20,7 +20,6 @@ std::string summary_of(const std::vector<Defect>& defects) {
     return text;
 }
 
-// Built by appending: g++ 12 warns falsely (-Wrestrict) on `literal + string`.
 std::string text_of(const std::string& path, std::uint64_t line, const std::string& reason) {
     std::string text = path;
     if (line > 0) text.append(":").append(std::to_string(line));
@@ -37,7 +36,8 @@ const char* name_of(DefectKind kind) {
                                "overlapping_segments",  "point_on_segment",           "point_near_segment",
                                "point_near_facet",      "segment_crosses_facet",      "crossing_facets",
                                "overlapping_facets",    "region_seed_on_facet",       "conflicting_region_seeds",
-                               "empty_input",           "option_out_of_range"};
+                               "empty_input",           "option_out_of_range",        "coordinate_out_of_range",
+                               "element_outside_facet", "point_on_facet"};
     return names.at(static_cast<std::size_t>(kind));
 }
 
