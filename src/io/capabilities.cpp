@@ -9,6 +9,7 @@
 #include <limits>
 
 #include "io/document_parts.h"
+#include "io/msh.h"
 
 namespace certa::io {
 namespace {
@@ -157,15 +158,8 @@ bool fits_reference(const Field& field, std::int64_t most_of_tetrahedra) {
     return integers_within(field, least_32, most_32);
 }
 
-bool fits_msh(const Field& field) {
-    if (field.name.find_first_of("\"\n\r") != std::string::npos || field.name.empty()) return false;
-    if (is_integer(field))
-        return is_label(field) && field.components == 1 && integers_within(field, -most_exact, most_exact);
-    return field.components == 1 || field.components == 3 || field.components == 9;
-}
-
 /// All cell fields of one name become one array.
-bool fits_vtu(const MeshDocument& document, const Field& field) {
+bool agrees_with_namesakes(const MeshDocument& document, const Field& field) {
     if (field.location == Location::vertices) return true;
     const PiecewiseLinearComplex& complex = document.complex;
     const bool beside_markers =
@@ -175,6 +169,15 @@ bool fits_vtu(const MeshDocument& document, const Field& field) {
         return other.location == Location::vertices || other.name != field.name ||
                (other.components == field.components && is_integer(other) == is_integer(field));
     });
+}
+
+bool fits_msh(const MeshDocument& document, const Field& field) {
+    if (field.name.find_first_of("\"\n\r") != std::string::npos || field.name.empty()) return false;
+    const auto* end = std::end(msh_integer_names);
+    const bool reads_as_integer = std::find(std::begin(msh_integer_names), end, field.name) != end;
+    if (reads_as_integer != is_integer(field) || !agrees_with_namesakes(document, field)) return false;
+    if (is_integer(field)) return field.components == 1 && integers_within(field, -most_exact, most_exact);
+    return field.components == 1 || field.components == 3 || field.components == 9;
 }
 
 bool fits(const MeshDocument& document, const Field& field, Format format) {
@@ -198,9 +201,9 @@ bool fits(const MeshDocument& document, const Field& field, Format format) {
                    (!is_integer(field) || integers_within(field, least_32, most_32) ||
                     integers_within(field, 0, std::numeric_limits<std::uint32_t>::max()));
         case Format::vtu:
-            return !field.name.empty() && fits_vtu(document, field);
+            return !field.name.empty() && agrees_with_namesakes(document, field);
         case Format::msh:
-            return fits_msh(field);
+            return fits_msh(document, field);
         case Format::csv:
             return field.location == Location::vertices;
     }

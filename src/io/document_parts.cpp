@@ -4,6 +4,8 @@
 #include "io/document_parts.h"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 namespace certa::io {
@@ -22,7 +24,106 @@ std::vector<std::int64_t> choose(const MeshDocument& document, const char* label
     return {};
 }
 
+bool is_zero(std::int64_t v) { return v == 0; }
+bool is_zero(double v) { return v == 0.0 && !std::signbit(v); }
+
+bool is_zero(const NumberArray& values) {
+    return std::visit([](const auto& v) { return std::all_of(v.begin(), v.end(), [](auto x) { return is_zero(x); }); },
+                      values);
+}
+std::size_t size_of(const NumberArray& values) {
+    return std::visit([](const auto& v) { return v.size(); }, values);
+}
+
+bool fits_markers(const NumberArray& values, std::uint32_t components) {
+    const auto* integers = std::get_if<std::vector<std::int64_t>>(&values);
+    return integers != nullptr && components == 1 &&
+           std::all_of(integers->begin(), integers->end(), [](std::int64_t v) {
+               return v >= std::numeric_limits<std::int32_t>::min() && v <= std::numeric_limits<std::int32_t>::max();
+           });
+}
+std::vector<std::int32_t> as_markers(const NumberArray& values) {
+    const auto& integers = std::get<std::vector<std::int64_t>>(values);
+    return meaningful({integers.begin(), integers.end()});
+}
+
+std::vector<std::int32_t>* markers_at(PiecewiseLinearComplex& complex, Location location) {
+    return const_cast<std::vector<std::int32_t>*>(find_markers(complex, location));
+}
+
+/// Appends what a kind of cell has under a name, as numbers of type T; zeros if it has nothing.
+template <class T>
+void append_part(const MeshDocument& document, std::string_view name, std::uint32_t components, Location location,
+                 std::vector<T>& values) {
+    const std::vector<std::int32_t>* markers = name == "marker" ? find_markers(document.complex, location) : nullptr;
+    if (const Field* field = find_field(document, name, location)) {
+        const auto& own = std::get<std::vector<T>>(field->values);
+        values.insert(values.end(), own.begin(), own.end());
+    } else if (markers != nullptr && !markers->empty()) {
+        values.insert(values.end(), markers->begin(), markers->end());
+    } else {
+        values.insert(values.end(), size_at(document, location) * components, T{});
+    }
+}
+
 }  // namespace
+
+void add_cell_array(MeshDocument& document, const std::string& name, std::uint32_t components,
+                    std::array<NumberArray, 3> parts) {
+    constexpr std::array<std::string_view, 3> labels{"region", "facet", "segment"};
+    const bool markers = name == "marker" && std::all_of(parts.begin(), parts.end(), [&](const NumberArray& part) {
+                             return fits_markers(part, components);
+                         });
+    const bool is_label = std::find(labels.begin(), labels.end(), name) != labels.end();
+    const bool all_zero =
+        std::all_of(parts.begin(), parts.end(), [](const NumberArray& part) { return is_zero(part); });
+    for (std::size_t k = 0; k < parts.size(); ++k) {
+        if (size_of(parts[k]) == 0) continue;
+        if (is_zero(parts[k]) && (markers || (is_label ? name != labels[k] : !all_zero))) continue;
+        std::vector<std::int32_t>* target = markers ? markers_at(document.complex, cell_locations[k]) : nullptr;
+        if (target != nullptr)
+            *target = as_markers(parts[k]);
+        else
+            document.fields.push_back({name, cell_locations[k], components, std::move(parts[k])});
+    }
+}
+
+void add_vertex_array(MeshDocument& document, const std::string& name, std::uint32_t components, NumberArray values) {
+    if (name == "marker" && fits_markers(values, components))
+        document.complex.point_markers = as_markers(values);
+    else
+        document.fields.push_back({name, Location::vertices, components, std::move(values)});
+}
+
+std::vector<std::string> cell_array_names(const MeshDocument& document) {
+    std::vector<std::string> names;
+    const auto add = [&](const std::string& name) {
+        if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+    };
+    for (const Field& field : document.fields)
+        if (field.location != Location::vertices) add(field.name);
+    if (!document.complex.facet_markers.empty() || !document.complex.segment_markers.empty()) add("marker");
+    return names;
+}
+
+std::uint32_t cell_array_components(const MeshDocument& document, std::string_view name) {
+    for (const Location location : cell_locations)
+        if (const Field* field = find_field(document, name, location)) return field->components;
+    return 1;
+}
+
+NumberArray merged_cell_array(const MeshDocument& document, std::string_view name) {
+    bool is_double = false;
+    for (const Location location : cell_locations)
+        if (const Field* field = find_field(document, name, location))
+            is_double = std::holds_alternative<std::vector<double>>(field->values);
+    const std::uint32_t components = cell_array_components(document, name);
+    NumberArray merged;
+    if (!is_double) merged = std::vector<std::int64_t>();
+    for (const Location location : cell_locations)
+        std::visit([&](auto& values) { append_part(document, name, components, location, values); }, merged);
+    return merged;
+}
 
 void make_facets_of_polygons(PiecewiseLinearComplex& complex) {
     complex.facet_offsets.resize(complex.polygon_count() + 1);

@@ -2,10 +2,12 @@
 // Filling documents and looking things up in them: shared by the readers and writers of all formats.
 #include <certa/io.h>
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
 namespace certa::io {
@@ -38,6 +40,25 @@ const std::vector<std::int64_t>* find_integers(const MeshDocument& document, std
 void add_field(MeshDocument& document, std::string name, Location location, std::vector<std::int64_t> values);
 void add_field(MeshDocument& document, std::string name, Location location, std::uint32_t components,
                std::vector<double> values);
+
+/// Kinds of cells in the order in which VTK and Gmsh files that we write list what one cell array covers.
+inline constexpr std::array cell_locations{Location::tetrahedra, Location::polygons, Location::segments};
+using NumberArray = std::variant<std::vector<double>, std::vector<std::int64_t>>;
+
+/// Adds the parts of one cell array, in the order of cell_locations. "marker" becomes the markers of the complex where
+/// it can. Formats with one array for all cells hold 0 where a kind of cell has none: a part that is zero everywhere is
+/// no field, unless all are, or it is the label of its kind.
+void add_cell_array(MeshDocument& document, const std::string& name, std::uint32_t components,
+                    std::array<NumberArray, 3> parts);
+
+/// Adds an array of vertices; "marker" becomes the markers of the points where it can.
+void add_vertex_array(MeshDocument& document, const std::string& name, std::uint32_t components, NumberArray values);
+
+/// The inverse of add_cell_array: the cell array of a name, zero where a kind of cell has none.
+NumberArray merged_cell_array(const MeshDocument& document, std::string_view name);
+/// Names of all cell arrays, markers included, in order of appearance.
+std::vector<std::string> cell_array_names(const MeshDocument& document);
+std::uint32_t cell_array_components(const MeshDocument& document, std::string_view name);
 
 /// Marker of a point, segment, or polygon (the marker of its facet; polygons are facets where this is asked); 0: none.
 inline std::int32_t marker_of(const std::vector<std::int32_t>& markers, std::size_t i) {

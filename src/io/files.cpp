@@ -106,6 +106,10 @@ MeshDocument parse(const NamedText& file, const NamedText& nodes, Format format)
             return io::read_off(file.text, file.name);
         case Format::obj:
             return io::read_obj(file.text, file.name);
+        case Format::ply:
+            return io::read_ply(file.text, file.name);
+        case Format::stl:
+            return io::read_stl(file.text, file.name);
         case Format::poly:
             return io::read_poly(file, nodes);
         case Format::smesh:
@@ -114,10 +118,14 @@ MeshDocument parse(const NamedText& file, const NamedText& nodes, Format format)
             return io::read_node_set({file, {}, {}, {}});
         case Format::medit:
             return io::read_medit(file.text, file.name);
-        default:
+        case Format::vtu:
+            return io::read_vtu(file.text, file.name);
+        case Format::msh:
+            return io::read_msh(file.text, file.name);
+        case Format::csv:
             break;
     }
-    throw IoError(file.name, 0, std::string("reading ") + name_of(format) + " is not possible");
+    throw IoError(file.name, 0, "CSV holds fields without a mesh and is only written");
 }
 
 /// What the first bytes say; TetGen's formats cannot be told apart by them.
@@ -177,6 +185,10 @@ std::string format_single(const MeshDocument& document, Format format, const Wri
             return io::write_off(document);
         case Format::obj:
             return io::write_obj(document);
+        case Format::ply:
+            return io::write_ply(document, options.encoding);
+        case Format::stl:
+            return io::write_stl(document, options.encoding);
         case Format::poly:
             return io::write_poly(document);
         case Format::smesh:
@@ -187,10 +199,12 @@ std::string format_single(const MeshDocument& document, Format format, const Wri
             return io::write_medit(document);
         case Format::vtu:
             return io::write_vtu(document, options.encoding);
-        default:
-            break;
+        case Format::msh:
+            return io::write_msh(document, options.encoding, options.msh_version_2);
+        case Format::csv:
+            return io::write_csv(document);
     }
-    throw IoError("document", 0, std::string("writing ") + name_of(format) + " is not possible");
+    return {};
 }
 
 bool needs_node_set(const MeshDocument& document) {

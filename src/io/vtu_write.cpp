@@ -13,8 +13,6 @@
 namespace certa::io {
 namespace {
 
-constexpr std::array cell_locations{Location::tetrahedra, Location::polygons, Location::segments};
-
 std::string escaped(std::string_view text) {
     std::string out;
     for (const char c : text) {
@@ -122,44 +120,16 @@ private:
                     field.values);
     }
 
-    template <class T>
-    void write_cell_field(std::string_view name, std::uint32_t components) {
-        std::vector<T> values;
-        values.reserve(cell_count() * components);
-        for (const Location location : cell_locations) {
-            const std::vector<std::int32_t>* markers =
-                name == "marker" ? find_markers(document_.complex, location) : nullptr;
-            const Field* field = find_field(document_, name, location);
-            if (field != nullptr) {
-                const auto& own = std::get<std::vector<T>>(field->values);
-                values.insert(values.end(), own.begin(), own.end());
-            } else if (markers != nullptr && !markers->empty()) {
-                values.insert(values.end(), markers->begin(), markers->end());
-            } else {
-                values.insert(values.end(), size_at(document_, location) * components, T{});
-            }
-        }
-        write_array<T>(name, components, values);
-    }
-
     void write_cell_fields() {
-        std::vector<std::string_view> done;
-        const auto is_new = [&](std::string_view name) {
-            for (const std::string_view other : done)
-                if (other == name) return false;
-            done.push_back(name);
-            return true;
-        };
-        for (const Field& field : document_.fields) {
-            if (field.location == Location::vertices || !is_new(field.name)) continue;
-            if (std::holds_alternative<std::vector<double>>(field.values))
-                write_cell_field<double>(field.name, field.components);
-            else
-                write_cell_field<std::int64_t>(field.name, field.components);
+        for (const std::string& name : cell_array_names(document_)) {
+            const std::uint32_t components = cell_array_components(document_, name);
+            std::visit(
+                [&](const auto& values) {
+                    using T = typename std::decay_t<decltype(values)>::value_type;
+                    write_array<T>(name, components, values);
+                },
+                merged_cell_array(document_, name));
         }
-        const PiecewiseLinearComplex& complex = document_.complex;
-        if ((!complex.facet_markers.empty() || !complex.segment_markers.empty()) && is_new("marker"))
-            write_cell_field<std::int64_t>("marker", 1);
     }
 
     const MeshDocument& document_;
