@@ -42,6 +42,12 @@ void write_document(const std::string& path, const MeshDocument& document, const
 MeshDocument parse_document(std::string_view text, Format format, const std::string& name = "input");
 std::string format_document(const MeshDocument& document, Format format, const WriteOptions& options = {});
 
+/// Writes a text the way write_document writes a file: complete or not at all.
+void write_text(const std::string& path, std::string_view text);
+
+/// Removes the temporary files of writes in progress. Async-signal-safe: for handlers that end the process.
+void remove_temporary_files() noexcept;
+
 /// The document of a conforming mesh: tetrahedra, constraint triangles (polygons) and constraint edges (segments).
 ///
 /// Result: integer fields "region" of tetrahedra, "facet" of polygons and "segment" of segments (1-based, 0: none);
