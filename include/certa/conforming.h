@@ -57,7 +57,7 @@ struct ConformResult {
 /// Input:      finite, distinct points; facets planar within `planarity` that meet only in common vertices, segments,
 ///             isolated segments and isolated points; any angles; open, internal, dangling, nested, non-manifold
 ///             welcome. A point that lies exactly on a facet without being listed there is adopted as an isolated point
-///             of it.
+///             of it, a segment that lies exactly in a facet as an isolated segment (warnings say so).
 /// Result:     see ConformResult. Regions are numbered from 1 in the order of their lowest input vertex;
 ///             region 0 is left out unless `keep_outside`, or nothing bounded exists (a warning says so).
 /// Errors:     InputError with every violation found.

@@ -37,6 +37,7 @@ enum class DefectKind : std::uint8_t {
     coordinate_out_of_range,  // finite, but too large or too close together for exact work in doubles
     element_outside_facet,    // an isolated segment or point of a facet lies outside it
     point_on_facet,           // exactly on a facet that does not list it: adopted, a note
+    segment_in_facet,         // a segment has a part in a facet that does not list it; adopted when wholly in it
 };
 const char* name_of(DefectKind kind);
 

@@ -11,16 +11,21 @@
 namespace certa::conforming {
 
 /// A point that lies exactly on a facet that does not list it.
-struct Adoption {
+struct AdoptedPoint {
     std::uint32_t point = 0, facet = 0;
+};
+/// A segment that lies exactly in a facet, from one point of it to another, and is no side of it.
+struct AdoptedSegment {
+    std::uint32_t segment = 0, facet = 0;
 };
 
 struct ValidationReport {
     std::size_t max_kept = 10'000;
-    std::vector<Defect> defects;    ///< the first max_kept, in a fixed order
-    std::size_t defect_count = 0;   ///< all
-    std::vector<Defect> notes;      ///< legal, but worth a warning: adopted points, ignored points
-    std::vector<Adoption> adopted;  ///< isolated points that the facets gain, by point, then facet
+    std::vector<Defect> defects;                   ///< the first max_kept, in a fixed order
+    std::size_t defect_count = 0;                  ///< all
+    std::vector<Defect> notes;                     ///< legal, but worth a warning: adopted points, ignored points
+    std::vector<AdoptedPoint> adopted_points;      ///< isolated points that facets gain, by point, then facet
+    std::vector<AdoptedSegment> adopted_segments;  ///< isolated segments that facets gain, by segment, then facet
     /// Unused points that repeat another point: they stay in the output and belong to no tetrahedron.
     std::vector<std::uint32_t> ignored_points;
     bool buildable = true;  ///< build_complex may be called: indices in range, coordinates finite
@@ -53,7 +58,7 @@ ValidationReport validate_geometry(const PiecewiseLinearComplex& input, const Co
 ValidationReport validate(const PiecewiseLinearComplex& input, const ConformOptions& options,
                           const RunControl& control = {});
 
-/// Adds the adopted points to their facets and rebuilds the incidences.
-void adopt_points(Complex& complex, std::span<const Adoption> adopted);
+/// Adds adopted points and segments to their facets and rebuilds the incidences. Segments keep their numbers.
+void adopt_elements(Complex& complex, const ValidationReport& report);
 
 }  // namespace certa::conforming

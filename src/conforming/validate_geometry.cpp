@@ -20,9 +20,13 @@ public:
 
     void report(const std::vector<Finding>& findings) {
         for (const Finding& finding : findings) {
+            if (finding.kind == FindingKind::segment_in_facet && is_whole_in_facet(finding)) {
+                adopt_segment(finding);
+                continue;
+            }
             if (is_said(finding)) continue;
             if (finding.kind == FindingKind::point_on_facet) {
-                adopt(finding);
+                adopt_point(finding);
             } else if (report_.defects.size() < report_.max_kept) {
                 report_.add(defect_of(finding));
             } else {
@@ -60,8 +64,27 @@ private:
                vertex_name(complex_.segments[s][1]) + ')';
     }
 
-    void adopt(const Finding& f) {
-        report_.adopted.push_back({f.first, f.second});
+    /// Both ends are points of the facet. Where it leaves the facet in between, another finding says so: it crosses a
+    /// side, runs over a vertex, or, in a facet that is flat only up to rounding, passes through it or along it.
+    bool is_whole_in_facet(const Finding& f) const {
+        const auto& ends = complex_.segments[f.first];
+        return std::all_of(ends.begin(), ends.end(), [&](std::uint32_t v) {
+            const auto own = complex_.point_facets[v];
+            return std::binary_search(own.begin(), own.end(), f.second) || said_.contains({3, v, f.second});
+        });
+    }
+
+    void adopt_segment(const Finding& f) {
+        report_.adopted_segments.push_back({f.first, f.second});
+        report_.notes.push_back({DefectKind::segment_in_facet,
+                                 {{ElementKind::segment, f.first}, {ElementKind::facet, f.second}},
+                                 place_of(complex_, pieces_, f),
+                                 segment_text(f.first) + " lies exactly in " + facet_name(f.second) +
+                                     "; it is taken as an isolated segment of the facet"});
+    }
+
+    void adopt_point(const Finding& f) {
+        report_.adopted_points.push_back({f.first, f.second});
         const Point3& p = complex_.points[f.first];
         report_.notes.push_back({DefectKind::point_on_facet,
                                  {{ElementKind::vertex, f.first}, {ElementKind::facet, f.second}},
@@ -114,11 +137,11 @@ private:
                         facet_name(f.first) + " and " + facet_name(f.second) + " cross" + where +
                             "; split them along their intersection, or use --repair"};
             case FindingKind::segment_in_facet:
-                return {DefectKind::segment_crosses_facet,
+                return {DefectKind::segment_in_facet,
                         {first_segment, facet},
                         place,
-                        segment_text(f.first) + " lies in " + facet_name(f.second) + where +
-                            "; list it as a segment of the facet, or use --repair"};
+                        segment_text(f.first) + " lies partly in " + facet_name(f.second) + where +
+                            "; split it at the facet's sides, or use --repair"};
             case FindingKind::segment_crosses_facet:
                 return {DefectKind::segment_crosses_facet,
                         {first_segment, facet},
@@ -172,9 +195,6 @@ ValidationReport validate_geometry(const PiecewiseLinearComplex& input, const Co
     if (control.cancelled()) return report;
     FindingReporter(complex, pieces, report).report(find_findings(complex, pieces, known));
     check_seeds(input, complex, pieces, report);
-    std::sort(report.adopted.begin(), report.adopted.end(), [](const Adoption& a, const Adoption& b) {
-        return a.point != b.point ? a.point < b.point : a.facet < b.facet;
-    });
     control.report("validate", 1.0);
     return report;
 }
@@ -193,22 +213,37 @@ ValidationReport validate(const PiecewiseLinearComplex& input, const ConformOpti
     return report;
 }
 
-void adopt_points(Complex& complex, std::span<const Adoption> adopted) {
-    if (adopted.empty()) return;
-    std::vector<Adoption> by_facet(adopted.begin(), adopted.end());
-    std::sort(by_facet.begin(), by_facet.end(), [](const Adoption& a, const Adoption& b) {
-        return a.facet != b.facet ? a.facet < b.facet : a.point < b.point;
-    });
-    Rows<std::uint32_t> rows;
-    std::vector<std::uint32_t> row;
-    auto next = by_facet.begin();
-    for (std::uint32_t f = 0; f < complex.facet_points.size(); ++f) {
-        const auto own = complex.facet_points[f];
-        row.assign(own.begin(), own.end());
-        for (; next != by_facet.end() && next->facet == f; ++next) row.push_back(next->point);
-        rows.push_row(row);
+void adopt_elements(Complex& complex, const ValidationReport& report) {
+    if (report.adopted_points.empty() && report.adopted_segments.empty()) return;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> points, segments;  // facet, element
+    for (const AdoptedPoint& a : report.adopted_points) points.emplace_back(a.facet, a.point);
+    for (const AdoptedSegment& a : report.adopted_segments) segments.emplace_back(a.facet, a.segment);
+    std::sort(points.begin(), points.end());
+    std::sort(segments.begin(), segments.end());
+    Rows<std::uint32_t> point_rows;
+    Rows<Side> side_rows;
+    std::vector<std::uint32_t> points_of_facet;
+    std::vector<Side> sides;
+    auto point = points.begin();
+    auto segment = segments.begin();
+    for (std::uint32_t f = 0; f < complex.facet_sides.size(); ++f) {
+        sides.assign(complex.facet_sides[f].begin(), complex.facet_sides[f].end());
+        for (; segment != segments.end() && segment->first == f; ++segment) sides.push_back({segment->second, false});
+        points_of_facet.assign(complex.facet_points[f].begin(), complex.facet_points[f].end());
+        for (; point != points.end() && point->first == f; ++point) points_of_facet.push_back(point->second);
+        // Isolated points are on no side: the ends of adopted segments are none.
+        const bool gained = sides.size() > complex.facet_sides[f].size();
+        if (gained)
+            std::erase_if(points_of_facet, [&](std::uint32_t v) {
+                return std::any_of(sides.begin(), sides.end(), [&](const Side& side) {
+                    return complex.segments[side.segment][0] == v || complex.segments[side.segment][1] == v;
+                });
+            });
+        side_rows.push_row(sides);
+        point_rows.push_row(points_of_facet);
     }
-    complex.facet_points = std::move(rows);
+    complex.facet_sides = std::move(side_rows);
+    complex.facet_points = std::move(point_rows);
     build_incidences(complex);
 }
 

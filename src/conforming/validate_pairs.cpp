@@ -10,10 +10,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "conforming/validate_boxes.h"
 #include "conforming/validate_findings.h"
+#include "conforming/validate_near.h"
 #include "core/vector3.h"
 #include "exact/orientation.h"
 
@@ -37,51 +37,6 @@ bool has_side(const Complex& complex, std::uint32_t segment, std::uint32_t facet
     return std::binary_search(facets.begin(), facets.end(), facet);
 }
 
-/// Both lists ascending.
-bool have_common(std::span<const std::uint32_t> a, std::span<const std::uint32_t> b) {
-    for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
-        if (a[i] == b[j]) return true;
-        a[i] < b[j] ? ++i : ++j;
-    }
-    return false;
-}
-
-double distance_to_segment(const Point3& a, const Point3& b, const Point3& p) {
-    const Point3 d = b - a, e = p - a;
-    const double t = std::clamp(dot(e, d) / dot(d, d), 0.0, 1.0);
-    return norm(e - t * d);
-}
-
-/// The part of segment `ends` over triangle `piece`, further than `near` from its owner's sides, in the owner's frame:
-/// the middle of it, if there is any.
-std::optional<Point3> clip(const Complex& complex, const Pieces& pieces, std::uint32_t piece,
-                           const std::array<std::uint32_t, 2>& ends, double near) {
-    const Frame& frame = complex.frames[pieces.owners[piece]];
-    const auto flat = [&](std::uint32_t v) {
-        const Point3 d = complex.points[v] - frame.origin;
-        return exact::Point2{dot(d, frame.u), dot(d, frame.v)};
-    };
-    const exact::Point2 p = flat(ends[0]), q = flat(ends[1]);
-    double from = 0.0, to = 1.0;
-    for (int i = 0; i < 3; ++i) {
-        const auto edge = static_cast<Feature>(first_edge + i);
-        const auto [v, w] = ends_of(pieces.simplices[piece], edge);
-        const exact::Point2 c = flat(v), d = flat(w);
-        const double length = std::hypot(d.x - c.x, d.y - c.y);
-        const auto depth = [&](const exact::Point2& x) {
-            return ((d.x - c.x) * (x.y - c.y) - (d.y - c.y) * (x.x - c.x)) / length;
-        };
-        const double margin = side_along(complex, pieces, piece, edge) == no_index ? 0.0 : near;
-        const double start = depth(p) - margin, stop = depth(q) - margin;
-        if (start <= 0.0 && stop <= 0.0) return std::nullopt;
-        if (start < 0.0) from = std::max(from, start / (start - stop));
-        if (stop < 0.0) to = std::min(to, start / (start - stop));
-    }
-    if (!(to - from > 1e-12)) return std::nullopt;
-    const double t = 0.5 * (from + to);
-    return (1.0 - t) * complex.points[ends[0]] + t * complex.points[ends[1]];
-}
-
 /// Compares pieces and collects findings; one per thread.
 class PairTester {
 public:
@@ -98,7 +53,7 @@ public:
             if (pieces_.owners[i] != pieces_.owners[j]) test_triangles(a, b);
         } else {
             classify(find_contacts(complex_.points, a, b));
-            test_near(a, b);
+            find_near(complex_, pieces_, a_, b_, findings);
         }
     }
 
@@ -154,7 +109,7 @@ private:
             if (is_clear_of_plane(b_, a_others, a_count, near)) return;
         }
         if (!are_surely_apart(a, b, a_others, b_others, b_count)) classify(find_contacts(complex_.points, a, b));
-        test_near(a, b);
+        find_near(complex_, pieces_, a_, b_, findings);
     }
 
     /// For triangles with two common vertices: the edge between them is a side of both facets.
@@ -176,24 +131,26 @@ private:
     bool are_surely_apart(const Simplex& a, const Simplex& b, const std::array<std::uint32_t, 3>& a_others,
                           const std::array<std::uint32_t, 3>& b_others, int count) const {
         if (count == 0) return false;
+        if (are_separated(a, b)) return true;
+        if (count == 3) return false;
         const auto sign = [&](const Simplex& t, std::uint32_t v) {
             return orient3d(at(t.vertices[0]), at(t.vertices[1]), at(t.vertices[2]), at(v));
         };
         std::array<int, 3> b_signs{};
-        bool strict = true, flat = true;
+        bool strict = true;
         for (int i = 0; i < count; ++i) {
             b_signs[i] = sign(a, b_others[i]);
             strict = strict && b_signs[i] != 0 && b_signs[i] == b_signs[0];
-            flat = flat && b_signs[i] == 0;
         }
         if (strict) return count > 1 || is_common_side(a, b);
-        if (flat) return are_separated_in_plane(a, b);
         if (count == 2) return are_wedges_apart(a, b, a_others, b_others, b_signs);
         return false;
     }
 
-    /// Coplanar triangles: a side of one of them has the other on its far side, with common vertices only on it.
-    bool are_separated_in_plane(const Simplex& a, const Simplex& b) const {
+    /// Seen along an axis, a side of one triangle has the other on its far side, with common vertices only on it: then
+    /// a plane through that side and along the axis parts them. All there is to say about coplanar triangles, and
+    /// cheaper than the signs of volumes for nearly coplanar ones.
+    bool are_separated(const Simplex& a, const Simplex& b) const {
         const int axis = faithful_axis(at(a.vertices[0]), at(a.vertices[1]), at(a.vertices[2]));
         if (axis < 0) return false;
         return has_separating_side(a_, a, b, axis) || has_separating_side(b_, b, a, axis);
@@ -321,85 +278,6 @@ private:
         }
     }
 
-    // Close without touching ----------------------------------------------------------------------------------------
-
-    void test_near(const Simplex& a, const Simplex& b) {
-        test_near_piece(a_, a, b_, b);
-        test_near_piece(b_, b, a_, a);
-    }
-
-    double height(std::uint32_t facet, std::uint32_t v) const {
-        const Frame& frame = complex_.frames[facet];
-        return dot(at(v) - frame.origin, frame.normal);
-    }
-
-    /// Vertices and sides of `b` against `a`.
-    void test_near_piece(std::uint32_t a_piece, const Simplex& a, std::uint32_t b_piece, const Simplex& b) {
-        if (a.size == 1) return;
-        const double near =
-            a.size == 3 ? pieces_.near[owner(a_piece)] : near_of(complex_.points, {a.vertices.data(), 2});
-        std::array<bool, 3> close{};
-        for (int i = 0; i < b.size; ++i) {
-            close[i] = a.size == 2 || std::abs(height(owner(a_piece), b.vertices[i])) <= near;
-            const std::uint32_t v = b.vertices[i];
-            if (!close[i] || v == a.vertices[0] || v == a.vertices[1] || (a.size == 3 && v == a.vertices[2])) continue;
-            if (!is_near_sides(a_piece, a, v) && a.size == 3) test_above(a_piece, a, v, near);
-        }
-        if (a.size != 3) return;
-        for (int i = 0; i < (b.size == 3 ? 3 : b.size - 1); ++i) {
-            const int j = i + 1 < b.size ? i + 1 : 0;
-            if (close[i] && close[j]) test_along(a_piece, b_piece, static_cast<Feature>(first_edge + i), near);
-        }
-    }
-
-    /// Reports v when it is within rounding of a side that it has no facet in common with; true when it is near any.
-    bool is_near_sides(std::uint32_t piece, const Simplex& a, std::uint32_t v) {
-        bool result = false;
-        for (int i = 0; i < (a.size == 3 ? 3 : 1); ++i) {
-            const auto edge = static_cast<Feature>(first_edge + i);
-            const auto ends = ends_of(a, edge);
-            if (distance_to_segment(at(ends[0]), at(ends[1]), at(v)) > near_of(complex_.points, ends)) continue;
-            const std::uint32_t s = side(piece, edge);
-            if (s == no_index) continue;
-            result = true;
-            // A facet that has both, such as a very flat triangle, says what is meant.
-            if (have_common(complex_.point_facets[v], complex_.segment_facets[s])) continue;
-            if (complex_.segments[s][0] == v || complex_.segments[s][1] == v) continue;
-            if (exact::is_between(at(ends[0]), at(ends[1]), at(v))) continue;
-            found(FindingKind::point_near_segment, v, s);
-        }
-        return result;
-    }
-
-    /// v is within rounding of the plane of triangle `a`, of none of its sides.
-    void test_above(std::uint32_t piece, const Simplex& a, std::uint32_t v, double near) {
-        const std::uint32_t facet = owner(piece);
-        const auto own = complex_.point_facets[v];
-        if (std::binary_search(own.begin(), own.end(), facet)) return;
-        std::array<Point3, 3> p{at(a.vertices[0]), at(a.vertices[1]), at(a.vertices[2])};
-        if (orient3d(p[0], p[1], p[2], at(v)) == 0) return;  // exactly on the plane: the corners tell
-        for (int i = 0; i < 3; ++i) {
-            if (distance(p[i], at(v)) <= near) return;
-        }
-        const int axis = faithful_axis(p[0], p[1], p[2]);
-        const auto flat = [&](const Point3& q) { return drop_axis(q, axis); };
-        const int turn = orient2d(flat(p[0]), flat(p[1]), flat(p[2]));
-        for (int i = 0; i < 3; ++i) {
-            if (turn * orient2d(flat(p[i]), flat(p[(i + 1) % 3]), flat(at(v))) < 0) return;
-        }
-        found(FindingKind::point_near_facet, v, facet);
-    }
-
-    /// A side of b both ends of which are within rounding of the plane of triangle `a`: does it run through the inside,
-    /// further than rounding from the sides?
-    void test_along(std::uint32_t a_piece, std::uint32_t b_piece, Feature edge, double near) {
-        const std::uint32_t facet = owner(a_piece);
-        if (!clip(complex_, pieces_, a_piece, ends_of(simplex(b_piece), edge), near)) return;
-        const std::uint32_t s = side(b_piece, edge);
-        if (s == no_index || has_side(complex_, s, facet)) return;
-        found(FindingKind::segment_near_facet, s, facet);
-    }
-
     const Complex& complex_;
     const Pieces& pieces_;
     std::uint32_t a_ = 0, b_ = 0;
@@ -496,7 +374,8 @@ Point3 place_of(const Complex& complex, const Pieces& pieces, const Finding& fin
             const bool first =
                 pieces.simplices[finding.piece_a].size == 3 && pieces.owners[finding.piece_a] == finding.second;
             const auto& ends = complex.segments[finding.first];
-            return clip(complex, pieces, first ? finding.piece_a : finding.piece_b, ends, pieces.near[finding.second])
+            return clip_to_piece(complex, pieces, first ? finding.piece_a : finding.piece_b, ends,
+                                 pieces.near[finding.second])
                 .value_or(complex.points[ends[0]]);
         }
         default:

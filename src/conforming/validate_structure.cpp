@@ -423,7 +423,8 @@ void ValidationReport::append(ValidationReport other) {
     for (Defect& defect : other.defects) add(std::move(defect));
     defect_count += dropped;
     for (Defect& note : other.notes) notes.push_back(std::move(note));
-    adopted.insert(adopted.end(), other.adopted.begin(), other.adopted.end());
+    adopted_points.insert(adopted_points.end(), other.adopted_points.begin(), other.adopted_points.end());
+    adopted_segments.insert(adopted_segments.end(), other.adopted_segments.begin(), other.adopted_segments.end());
     ignored_points.insert(ignored_points.end(), other.ignored_points.begin(), other.ignored_points.end());
     buildable = buildable && other.buildable;
 }

@@ -37,7 +37,7 @@ const char* name_of(DefectKind kind) {
                                "point_near_facet",      "segment_crosses_facet",      "crossing_facets",
                                "overlapping_facets",    "region_seed_on_facet",       "conflicting_region_seeds",
                                "empty_input",           "option_out_of_range",        "coordinate_out_of_range",
-                               "element_outside_facet", "point_on_facet"};
+                               "element_outside_facet", "point_on_facet",             "segment_in_facet"};
     return names.at(static_cast<std::size_t>(kind));
 }
 
