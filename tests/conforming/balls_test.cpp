@@ -221,6 +221,23 @@ TEST(SharpSegments, TheThresholdIsNinetyDegrees) {
     EXPECT_FALSE(is_sharp(180 * degree));
 }
 
+TEST(SharpSegments, AFacetThatReachesFartherOnItsOtherSide) {
+    // An L whose widest part is across the line of its inner side; a fin there, leaning towards the L or away from it.
+    for (const double angle : {60.0, 89.0, 91.0, 120.0}) {
+        PiecewiseLinearComplex input;
+        input.positions = {{0, 0, 0}, {3, 0, 0}, {3, 1, 0}, {1, 1, 0}, {1, 3, 0}, {0, 3, 0}};
+        input.positions.push_back({2, 1 - std::cos(angle * degree), std::sin(angle * degree)});
+        const auto v = [](std::uint32_t i) { return VertexId{i}; };
+        add_facet(input, {{v(0), v(1), v(2), v(3), v(4), v(5)}});
+        add_facet(input, {{v(2), v(3), v(6)}});
+        const Complex c = build_complex(input);
+        const FacetInterior interior = build_facet_interior(c);
+        std::size_t sharp = 0;
+        for (std::uint32_t s = 0; s < c.segments.size(); ++s) sharp += is_sharp_segment(c, interior, s);
+        EXPECT_EQ(sharp, angle < 90.0 ? 1u : 0u) << angle;
+    }
+}
+
 TEST(SharpSegments, AFacetOnBothSidesCountsTwice) {
     // A fin on an isolated segment of a square: sharp unless it stands upright.
     for (const double lean : {0.0, 0.1}) {
