@@ -119,6 +119,8 @@ struct MeshDocument {
     /// Set: a format with one number per element writes the labels (id) or the markers, and leaves the other labels
     /// out. Empty: a document with both is refused by such a format.
     std::optional<Reference> reference;
+    /// One line that volume formats carry as a comment, such as that a mesh is a partial result. Not read back.
+    std::string remark;
     /// What the reader left out of the document, a sentence each ("normals are left out").
     std::vector<std::string> notes;
 };

@@ -79,6 +79,36 @@ constexpr std::array check_table{
                                    "largest distance of a vertex from the segment or facet that carries it"},
 };
 
+constexpr std::array<std::string_view, 3> encoding_names{"automatic", "ascii", "binary"};
+constexpr std::array<std::string_view, 2> msh_version_names{"4.1", "2.2"};
+constexpr std::array<std::string_view, 2> reference_names{"id", "marker"};
+
+constexpr std::array output_table{
+    Option<OutputOptions>{
+        "encoding",
+        "encoding",
+        Choice<OutputOptions>{encoding_names,
+                              [](const OutputOptions& o) { return static_cast<std::size_t>(o.encoding); },
+                              [](OutputOptions& o, std::size_t i) { o.encoding = static_cast<Encoding>(i); }},
+        {},
+        "how numbers are stored, in formats that leave a choice"},
+    Option<OutputOptions>{
+        "msh_version",
+        "msh-version",
+        Choice<OutputOptions>{msh_version_names, [](const OutputOptions& o) { return std::size_t{o.msh_version_2}; },
+                              [](OutputOptions& o, std::size_t i) { o.msh_version_2 = i == 1; }},
+        {},
+        "version of .msh that is written"},
+    Option<OutputOptions>{
+        "reference",
+        "reference",
+        Choice<OutputOptions>{reference_names,
+                              [](const OutputOptions& o) { return static_cast<std::size_t>(o.reference); },
+                              [](OutputOptions& o, std::size_t i) { o.reference = static_cast<Reference>(i); }},
+        {},
+        "what formats with one number per element carry: 1-based facet and segment, or the input's markers"},
+};
+
 std::string quoted(std::string_view text) { return std::string("'").append(text).append("'"); }
 
 [[noreturn]] void refuse(std::string_view name, std::string_view text, std::string_view expected) {
@@ -99,6 +129,7 @@ std::string flag_of(std::string_view flag) { return std::string("--").append(fla
 
 std::span<const Option<ConformOptions>> conform_options() { return conform_table; }
 std::span<const Option<ConformingCheckOptions>> conforming_check_options() { return check_table; }
+std::span<const Option<OutputOptions>> output_options() { return output_table; }
 
 double parse_number(std::string_view name, std::string_view text) {
     double value = 0.0;
@@ -132,7 +163,16 @@ std::string text_of(double value) {
 }
 
 std::string text_of(const Length& length) {
-    return length.relative_to_diagonal ? text_of(length.value * 100.0).append("%") : text_of(length.value);
+    if (!length.relative_to_diagonal) return text_of(length.value);
+    // 100 times the value need not be a double: the fewest digits that come back as the same fraction.
+    std::array<char, 32> buffer;
+    for (int digits = 1; digits <= 17; ++digits) {
+        const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), length.value * 100.0,
+                                                std::chars_format::general, digits);
+        const std::string text = std::string(buffer.data(), end) + "%";
+        if (parse_length("", text).value == length.value) return text;
+    }
+    return text_of(length.value * 100.0) + "%";
 }
 
 std::string text_of(const Bounds& bounds) {
@@ -216,9 +256,8 @@ std::string placeholder_of(const Option<Options>& option) {
 template <class Options>
 std::string help_of(const Option<Options>& option) {
     std::string text(option.help);
-    const bool is_flag = std::holds_alternative<bool Options::*>(option.member);
-    const bool is_length = std::holds_alternative<Length Options::*>(option.member);
-    if (is_flag) return text;
+    if (is_flag(option)) return text;
+    const bool is_length = placeholder_of(option) == "LENGTH";
     text.append(" (");
     if (is_length)
         text.append("number or % of the diagonal; ");
@@ -237,5 +276,9 @@ template void set_option(const Option<ConformingCheckOptions>&, ConformingCheckO
 template std::string value_of(const Option<ConformingCheckOptions>&, const ConformingCheckOptions&);
 template std::string placeholder_of(const Option<ConformingCheckOptions>&);
 template std::string help_of(const Option<ConformingCheckOptions>&);
+template void set_option(const Option<OutputOptions>&, OutputOptions&, std::string_view);
+template std::string value_of(const Option<OutputOptions>&, const OutputOptions&);
+template std::string placeholder_of(const Option<OutputOptions>&);
+template std::string help_of(const Option<OutputOptions>&);
 
 }  // namespace certa::frontend

@@ -2,6 +2,7 @@
 // The options of every verb, once: name, unit, default, bounds, help. The command's help, its parsing and its report
 // are made from these tables; so will be the signatures of the Python module.
 #include <certa/conforming.h>
+#include <certa/io.h>
 
 #include <cstdint>
 #include <limits>
@@ -10,6 +11,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
 #include <variant>
 
 namespace certa::frontend {
@@ -39,9 +41,14 @@ struct Choice {
     void (*set)(Options&, std::size_t);
 };
 
+/// The kinds of members that options of a verb have.
 template <class Options>
-using Member = std::variant<bool Options::*, double Options::*, Length Options::*,
-                            std::optional<std::uint64_t> Options::*, Choice<Options>>;
+struct MemberOf {
+    using type = std::variant<bool Options::*, double Options::*, Length Options::*,
+                              std::optional<std::uint64_t> Options::*, Choice<Options>>;
+};
+template <class Options>
+using Member = typename MemberOf<Options>::type;
 
 template <class Options>
 struct Option {
@@ -52,8 +59,21 @@ struct Option {
     std::string_view help;  ///< a phrase; unit, default and bounds are added by `help_of`
 };
 
+/// How the command writes results.
+struct OutputOptions {
+    Encoding encoding = Encoding::automatic;
+    bool msh_version_2 = false;
+    Reference reference = Reference::id;
+};
+
+template <>
+struct MemberOf<OutputOptions> {
+    using type = std::variant<Choice<OutputOptions>>;
+};
+
 std::span<const Option<ConformOptions>> conform_options();
 std::span<const Option<ConformingCheckOptions>> conforming_check_options();
+std::span<const Option<OutputOptions>> output_options();  ///< the last one, reference, is for labelled meshes only
 
 /// "12.5" or "2%" (of the bounding box's diagonal). `name` stands for the option in the message.
 Length parse_length(std::string_view name, std::string_view text);
@@ -64,6 +84,13 @@ std::uint64_t parse_count(std::string_view name, std::string_view text);
 std::string text_of(double value);
 std::string text_of(const Length& length);
 std::string text_of(const Bounds& bounds);
+
+template <class Options>
+bool is_flag(const Option<Options>& option) {
+    return std::visit(
+        [](const auto& member) { return std::is_same_v<std::decay_t<decltype(member)>, bool Options::*>; },
+        option.member);
+}
 
 /// Sets one option from text. Flags take no text: an empty text sets them.
 ///

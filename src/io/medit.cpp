@@ -205,7 +205,9 @@ std::string write_medit(const MeshDocument& document) {
     const ElementNumbers numbers = choose_element_numbers(document);
     TextOutput out;
     out.reserve(complex.positions.size() * 64 + complex.corners.size() * 10 + document.tetrahedra.size() * 36);
-    out << "MeshVersionFormatted 2\nDimension 3\n\nVertices\n" << complex.positions.size() << '\n';
+    out << "MeshVersionFormatted 2\n";
+    if (!document.remark.empty()) out << "# " << document.remark << '\n';
+    out << "Dimension 3\n\nVertices\n" << complex.positions.size() << '\n';
     for (std::size_t i = 0; i < complex.positions.size(); ++i)
         out << complex.positions[i] << ' ' << (numbers.vertices.empty() ? 0 : numbers.vertices[i]) << '\n';
     if (!complex.segments.empty()) {

@@ -31,15 +31,16 @@ TEST(Errors, InputErrorKeepsAllDefectsAndShowsTheFirst) {
     EXPECT_NE(text.find("\n... and 2 more"), std::string::npos);
 }
 
-// name_of must follow the order of the enumeration: one name each, none twice, the last one present.
+// name_of must follow the order of the enumeration: one name each, none twice, none missing at the end.
 TEST(Errors, EveryDefectKindHasItsOwnName) {
     std::set<std::string> names;
-    const auto last = static_cast<int>(DefectKind::option_out_of_range);
+    const auto last = static_cast<int>(DefectKind::point_on_facet);
     for (int kind = 0; kind <= last; ++kind) names.insert(certa::name_of(static_cast<DefectKind>(kind)));
     EXPECT_EQ(names.size(), static_cast<std::size_t>(last) + 1);
     EXPECT_STREQ(certa::name_of(DefectKind::non_finite_coordinate), "non_finite_coordinate");
     EXPECT_STREQ(certa::name_of(DefectKind::hole_outside_facet), "hole_outside_facet");
     EXPECT_STREQ(certa::name_of(DefectKind::option_out_of_range), "option_out_of_range");
+    EXPECT_STREQ(certa::name_of(DefectKind::point_on_facet), "point_on_facet");
     EXPECT_STREQ(certa::name_of(certa::ElementKind::option), "option");
     EXPECT_STREQ(certa::name_of(certa::Outcome::cancelled), "cancelled");
 }

@@ -1,0 +1,114 @@
+// `certa check FILE [--against INPUT]`: decides what `conform` promises, on any file.
+// Without INPUT there is nothing to conform to: the mesh's own constraint triangles and edges stand in for it, and what
+// is decided is the Delaunay property and the form of the mesh.
+#include <certa/conforming.h>
+
+#include <algorithm>
+#include <memory>
+#include <numeric>
+
+#include "commands.h"
+#include "interrupt.h"
+#include "report.h"
+#include "session.h"
+
+namespace certa::cli {
+namespace {
+
+struct CheckArguments {
+    CommonFlags common;
+    FileArgument file, against;
+    ConformingCheckOptions options;
+};
+
+/// The complex of the mesh's own constraints: every triangle a facet, every edge a segment; `mesh` is relabelled so.
+PiecewiseLinearComplex own_complex(TetMesh& mesh) {
+    PiecewiseLinearComplex complex;
+    complex.positions = mesh.positions;
+    complex.segments = mesh.edges;
+    for (const Triangle& triangle : mesh.triangles) add_facet(complex, {{triangle.begin(), triangle.end()}});
+    mesh.vertex_sources.clear();
+    mesh.triangle_facets.resize(mesh.triangles.size());
+    mesh.edge_segments.resize(mesh.edges.size());
+    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.triangle_facets[i] = FacetId{i};
+    for (std::uint32_t i = 0; i < mesh.edges.size(); ++i) mesh.edge_segments[i] = SegmentId{i};
+    return complex;
+}
+
+bool is_decided_alone(const Violation& violation) {
+    return violation.promise == "delaunay" || violation.promise == "well-formed" || violation.promise == "gabriel";
+}
+
+/// Keeps what can be said without an input. At most 100 violations of each promise were kept, so the count is of those.
+void keep_what_is_decided_alone(ConformingCheck& check) {
+    std::erase_if(check.violations, [](const Violation& v) { return !is_decided_alone(v); });
+    check.violation_count = check.violations.size();
+}
+
+void say_violations(Session& session, const ConformingCheck& check) {
+    const std::size_t shown =
+        session.flags().verbose ? check.violations.size() : std::min<std::size_t>(20, check.violations.size());
+    for (std::size_t i = 0; i < shown; ++i) {
+        const Violation& violation = check.violations[i];
+        session.say(violation.promise + ": " + violation.message + text_of_place(violation.place));
+    }
+    if (check.violation_count > shown) session.say("... " + counted(check.violation_count - shown, "more violation"));
+}
+
+ExitCode run_check(Session& session, const CheckArguments& arguments) {
+    const MeshDocument document = session.read(arguments.file, "input");
+    if (document.tetrahedra.empty())
+        throw UsageError(arguments.file.path +
+                         " has no tetrahedra: `check` verifies tetrahedral meshes; `certa info` "
+                         "describes surfaces and complexes");
+    TetMesh mesh = make_tet_mesh(document);
+    const bool alone = !arguments.against.given();
+    const PiecewiseLinearComplex complex =
+        alone ? own_complex(mesh) : session.read(arguments.against, "against").complex;
+    ConformingCheck check = session.timed("check", [&] {
+        const GracefulScope graceful;
+        return check_conforming(mesh, complex, arguments.options, session.control());
+    });
+    if (interrupt_flag()) return ExitCode::interrupted;
+    if (alone) keep_what_is_decided_alone(check);
+    std::vector<std::string> promises{"well-formed", "delaunay"};
+    if (!alone) promises.insert(promises.end(), {"conforming", "faithful", "labelled"});
+    if (arguments.options.gabriel) promises.push_back("gabriel");
+    session.report()["check"] = to_json(check);
+    session.report()["checked"] = promises;
+    const std::string counts = counted(check.tetrahedra_checked, "tetrahedron", "tetrahedra") + ", " +
+                               counted(check.segments_checked, "segment") + ", " +
+                               counted(check.facets_checked, "facet") + " checked";
+    if (!check.ok()) {
+        say_violations(session, check);
+        session.say("VIOLATED: " + counted(check.violation_count, "violation") + "; " + counts);
+        return ExitCode::violated;
+    }
+    session.report()["proved"] = promises;
+    session.say("verified: " + joined(promises) + "; " + counts);
+    if (alone) session.say("without --against, nothing is said about the complex that the mesh was made from");
+    return ExitCode::done;
+}
+
+}  // namespace
+
+void add_check_command(CLI::App& app, Action& action) {
+    auto arguments = std::make_shared<CheckArguments>();
+    CLI::App* command = app.add_subcommand("check", "Verify what `conform` promises, exactly, on any tetrahedral mesh");
+    command->footer("Example:\n  certa check part.mesh --against part.off");
+    command->add_option("FILE", arguments->file.path, "tetrahedral mesh (-: standard input)")->required();
+    command->add_option("--against", arguments->against.path, "the surface mesh or complex that it was made from")
+        ->type_name("INPUT");
+    add_format_option(*command, "--input-format", arguments->file);
+    add_format_option(*command, "--against-format", arguments->against);
+    add_options(*command, frontend::conforming_check_options(), arguments->options);
+    add_common_flags(*command, arguments->common);
+    command->callback([arguments, &action] {
+        action = [arguments] {
+            Session session("check", arguments->common);
+            return session.run([&] { return run_check(session, *arguments); });
+        };
+    });
+}
+
+}  // namespace certa::cli
