@@ -19,10 +19,10 @@ const char* name_of(Format format);
 std::optional<Format> format_named(std::string_view name);  ///< inverse of name_of
 
 struct ReadOptions {
-    std::optional<Format> format;  ///< by extension, else by content, when empty; needed for "-"
+    std::optional<Format> format = std::nullopt;  ///< by extension, else by content, when empty; needed for "-"
 };
 struct WriteOptions {
-    std::optional<Format> format;
+    std::optional<Format> format = std::nullopt;
     Encoding encoding = Encoding::automatic;
     bool msh_version_2 = false;  ///< write .msh 2.2 instead of 4.1
 };

@@ -216,6 +216,9 @@ std::vector<std::string> problems_of(const MeshDocument& document, const Shape& 
     for (const Field& field : document.fields)
         if (!fits(document, field, format))
             problems.push_back("the field '" + field.name + "' of " + name_of(field.location));
+    const bool is_complex = format == Format::poly || format == Format::smesh;
+    // TetGen takes an empty list of points for "in the .node file".
+    if (is_complex && document.complex.positions.empty()) problems.emplace_back("a complex without points");
     if (format == Format::csv && problems.empty()) {
         const bool any = !document.complex.point_markers.empty() || !document.fields.empty();
         if (!any) problems.emplace_back("a mesh without fields");
