@@ -68,6 +68,28 @@ struct ConformResult {
 ConformResult conform(const PiecewiseLinearComplex& complex, const ConformOptions& options = {},
                       const RunControl& control = {});
 
+/// What `repair` and `triangulate` make of a complex before anything else.
+struct RepairedComplex {
+    PiecewiseLinearComplex complex;  ///< the input's points first, unchanged; facet i < input's count stays facet i
+    std::vector<FacetId> facet_sources;  ///< per facet of `complex`: the input's facet it is, or is a part of
+    std::vector<Defect> repairs;         ///< what was done, element by element, with the numbers of the moment
+};
+
+/// Repairs a complex as ConformOptions::repair and ::triangulate say; with neither, returns it as it is.
+///
+/// Definition: repair: points that coincide become one (the others stay, unused); sides and segments without length and
+///             repeated segments go; facets without area and repeated facets become empty; segments are split at points
+///             on them or within rounding, and where they cross; facets that cross get their intersection as isolated
+///             segments, and segments that pierce a facet a point of it. Points of intersection are computed exactly
+///             and rounded. triangulate: a facet that is not planar becomes triangles, the first in its place, the
+///             others at the end.
+/// Result:     may still be invalid: overlapping coplanar facets, facets whose own rings cross and the like have no one
+///             obvious meaning. `conform` refuses what is left.
+/// Errors:     InputError when indices or coordinates make no sense.
+/// Cost:       O(n log n) a round, at most 24 rounds; deterministic.
+RepairedComplex repair_complex(const PiecewiseLinearComplex& complex, const ConformOptions& options,
+                               const RunControl& control = {});
+
 /// One PLC facet per polygon of the mesh.
 PiecewiseLinearComplex make_complex(const PolygonMesh& mesh);
 PiecewiseLinearComplex make_complex(const TriangleMesh& mesh);

@@ -51,11 +51,15 @@ struct Finding {
     friend auto operator<=>(const Finding&, const Finding&) = default;
 };
 
-/// All findings, sorted, one per kind and pair of elements.
-std::vector<Finding> find_findings(const Complex& complex, const Pieces& pieces, const KnownClean& known);
+/// All findings, sorted; without `every_piece` one per kind and pair of elements.
+std::vector<Finding> find_findings(const Complex& complex, const Pieces& pieces, const KnownClean& known,
+                                   bool every_piece = false);
 
 /// The side of the owner along an edge of a piece; no_index for edges inside a facet.
 std::uint32_t side_along(const Complex& complex, const Pieces& pieces, std::uint32_t piece, Feature edge);
+
+/// The edge of a simplex whose closure has both features; `inside` when there is none.
+Feature edge_with(const Simplex& simplex, Feature f, Feature g);
 
 /// A point where the finding shows.
 Point3 place_of(const Complex& complex, const Pieces& pieces, const Finding& finding);

@@ -249,17 +249,6 @@ private:
         }
     }
 
-    /// The edge of a simplex whose closure has both features, if any.
-    static Feature edge_with(const Simplex& s, Feature f, Feature g) {
-        for (int i = 0; i < (s.size == 3 ? 3 : s.size - 1); ++i) {
-            const int j = i + 1 < s.size ? i + 1 : 0;
-            const auto edge = static_cast<Feature>(first_edge + i);
-            const auto has = [&](Feature x) { return x == edge || x == i || x == j; };
-            if (has(f) && has(g)) return edge;
-        }
-        return inside;
-    }
-
     /// The pieces have a segment in common.
     void classify_line(const Contact& c, const Contact& d) {
         const Feature e = edge_with(simplex(a_), c.first, d.first), f = edge_with(simplex(b_), c.second, d.second);
@@ -325,6 +314,16 @@ std::vector<std::uint8_t> find_active(const Pieces& pieces, const KnownClean& kn
 
 }  // namespace
 
+Feature edge_with(const Simplex& s, Feature f, Feature g) {
+    for (int i = 0; i < (s.size == 3 ? 3 : s.size - 1); ++i) {
+        const int j = i + 1 < s.size ? i + 1 : 0;
+        const auto edge = static_cast<Feature>(first_edge + i);
+        const auto has = [&](Feature x) { return x == edge || x == i || x == j; };
+        if (has(f) && has(g)) return edge;
+    }
+    return inside;
+}
+
 std::uint32_t side_along(const Complex& complex, const Pieces& pieces, std::uint32_t piece, Feature edge) {
     const Simplex& s = pieces.simplices[piece];
     const std::uint32_t owner = pieces.owners[piece];
@@ -340,7 +339,8 @@ std::uint32_t side_along(const Complex& complex, const Pieces& pieces, std::uint
     return segment != no_index && has_side(complex, segment, owner) ? segment : no_index;
 }
 
-std::vector<Finding> find_findings(const Complex& complex, const Pieces& pieces, const KnownClean& known) {
+std::vector<Finding> find_findings(const Complex& complex, const Pieces& pieces, const KnownClean& known,
+                                   bool every_piece) {
     const std::vector<std::uint8_t> active = find_active(pieces, known);
     if (std::find(active.begin(), active.end(), 1) == active.end()) return {};
     const BoxTree tree(boxes_of(complex, pieces), active);
@@ -356,6 +356,7 @@ std::vector<Finding> find_findings(const Complex& complex, const Pieces& pieces,
         findings.insert(findings.end(), tester.findings.begin(), tester.findings.end());
     }
     std::sort(findings.begin(), findings.end());
+    if (every_piece) return findings;
     const auto same = [](const Finding& f, const Finding& g) {
         return f.kind == g.kind && f.first == g.first && f.second == g.second;
     };

@@ -1,0 +1,61 @@
+// Facets that are not planar become triangles: those of the constrained Delaunay triangulation seen along the axis
+// nearest to the normal. The first triangle takes the facet's place, the others follow after the last facet.
+#include <algorithm>
+#include <cmath>
+
+#include "conforming/build_complex.h"
+#include "conforming/flat_facet.h"
+#include "conforming/repair.h"
+#include "conforming/validate_messages.h"
+#include "core/vector3.h"
+
+namespace certa::conforming {
+namespace {
+
+double deviation_of(const EditableFacet& facet, const EditableComplex& complex, const Frame& frame) {
+    double largest = 0.0;
+    for (const auto& polygon : facet.polygons) {
+        for (const std::uint32_t v : polygon) {
+            largest = std::max(largest, std::abs(dot(complex.points[v] - frame.origin, frame.normal)));
+        }
+    }
+    return largest;
+}
+
+}  // namespace
+
+RepairedComplex triangulate_facets(const PiecewiseLinearComplex& input, double planarity) {
+    EditableComplex edited = take_apart(input);
+    const auto count = static_cast<std::uint32_t>(edited.facets.size());
+    RepairedComplex result;
+    for (std::uint32_t f = 0; f < count; ++f) result.facet_sources.push_back(FacetId{f});
+    for (std::uint32_t f = 0; f < count; ++f) {
+        if (edited.facets[f].polygons.empty()) continue;
+        const Frame frame = build_frame(input, f);
+        const double deviation = deviation_of(edited.facets[f], edited, frame);
+        if (deviation <= planarity) continue;
+        const FlatFacet flat = flatten_facet(input, f, Projection(frame.normal));
+        if (flat.state == FlatState::crossing || flat.triangles.empty() || !flat.holes_outside.empty()) continue;
+        result.repairs.push_back({DefectKind::non_planar_facet,
+                                  {{ElementKind::facet, f}},
+                                  frame.origin,
+                                  facet_name(f) + " deviates by " + name_number(deviation) +
+                                      " from its plane and was cut into " + std::to_string(flat.triangles.size()) +
+                                      " triangles"});
+        const std::int32_t marker = edited.facets[f].marker;
+        for (std::size_t i = 0; i < flat.triangles.size(); ++i) {
+            const auto& t = flat.triangles[i];
+            EditableFacet piece{{{t[0], t[1], t[2]}}, {}, marker};
+            if (i == 0) {
+                edited.facets[f] = std::move(piece);
+            } else {
+                edited.facets.push_back(std::move(piece));
+                result.facet_sources.push_back(FacetId{f});
+            }
+        }
+    }
+    result.complex = put_together(edited, input);
+    return result;
+}
+
+}  // namespace certa::conforming
