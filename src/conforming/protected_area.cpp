@@ -52,6 +52,7 @@ public:
         area_.balls = balls.balls;
         area_.ball_centers.assign(balls.balls.size(), no_index);
         area_.input_points = static_cast<std::uint32_t>(complex.points.size());
+        for (std::uint32_t f = 0; f < complex.facet_sides.size(); ++f) normals_.push_back(facet_normal(f));
         for (std::uint32_t v = 0; v < complex.points.size(); ++v) {
             if (balls.vertex_balls[v] != no_index) area_.ball_centers[balls.vertex_balls[v]] = v;
         }
@@ -81,6 +82,17 @@ private:
     std::uint32_t add(const NewPoint& point) {
         area_.points.push_back(point);
         return area_.input_points + static_cast<std::uint32_t>(area_.points.size() - 1);
+    }
+
+    /// The frame's normal with more digits: points are placed to an ulp also in slivers.
+    Vector facet_normal(std::uint32_t f) const {
+        Vector sum;
+        for (const auto& [a, b, c] : interior_.triangles[f]) {
+            const Point3& origin = complex_.points[a];
+            sum = sum + cross(difference(complex_.points[b], origin), difference(complex_.points[c], origin));
+        }
+        const long double size = length(sum);
+        return size > 0.0L ? (1.0L / size) * sum : Vector(complex_.frames[f].normal);
     }
 
     Vector direction_of(std::uint32_t s) const {
@@ -167,7 +179,7 @@ private:
         if (row.empty()) return;
         const Vector along = direction_of(s), start(complex_.points[complex_.segments[s][0]]);
         for (const Sheet& sheet : interior_.sheets[s]) {
-            const Vector left = normalized(cross(Vector(complex_.frames[sheet.facet].normal), along));
+            const Vector left = normalized(cross(normals_[sheet.facet], along));
             for (const std::uint8_t side : {cover_left, cover_right}) {
                 if (!(sheet.cover & side)) continue;
                 for (std::size_t i = 0; i + 1 < row.size(); ++i) {
@@ -226,7 +238,7 @@ private:
                                 " overlap; please report this");
         }
         const auto parts = static_cast<std::uint32_t>(angle / (pi / 2 - angle_margin)) + 1;
-        const Vector turned = normalized(cross(Vector(complex_.frames[facet].normal), direction));
+        const Vector turned = normalized(cross(normals_[facet], direction));
         std::uint32_t previous = from.point;
         for (std::uint32_t i = 1; i < parts; ++i) {
             const long double at = from.angle + angle * i / parts;
@@ -340,8 +352,8 @@ private:
 
     /// Around an isolated point of the facet.
     void fill_disk(std::uint32_t f, std::uint32_t ball) {
-        const Vector normal(complex_.frames[f].normal), u(complex_.frames[f].u);
-        const Vector direction = normalized(u - (dot(u, normal) / dot(normal, normal)) * normal);
+        const Vector& normal = normals_[f];
+        const Vector u(complex_.frames[f].u), direction = normalized(u - dot(u, normal) * normal);
         const std::uint32_t first = add_sos_point(f, ball, direction);
         add_isosceles(f, ball, {first}, {first}, direction, 2 * pi);
     }
@@ -350,6 +362,7 @@ private:
     const FacetInterior& interior_;
     const ProtectingBalls& balls_;
     ProtectedArea area_;
+    std::vector<Vector> normals_;         // per facet
     Rows<Lens> lenses_;                   // per segment, between consecutive balls
     std::vector<std::uint32_t> first_p_;  // per segment: id of its first p-point
     // Scratch space.

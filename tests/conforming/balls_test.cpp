@@ -86,6 +86,7 @@ std::vector<Case> cases() {
         add("mixture " + std::to_string(seed), gen::make_mixture(seed));
     }
     add("geology", gen::make_geology(3, 3, 4));
+    add("mixture far away", gen::make_moved(gen::make_mixture(4), 8, {1e6, 1e6, -1e6}));
     return all;
 }
 
@@ -291,6 +292,37 @@ TEST(ProtectedArea, HoldsOnEveryCaseForEveryScheme) {
             expect_protection(c, interior, size, protect_sharp(c, interior), alpha);
             if (alpha == 0.4 || c.points.size() < 12) expect_protection(c, interior, size, protect_all(c), alpha);
             expect_protection(c, interior, size, random_set(c, random, 0.2), alpha);
+        }
+    }
+}
+
+/// Many more seeds; each is printed when it fails.
+TEST(ProtectedAreaLong, HoldsOnRandomComplexes) {
+    for (std::uint64_t seed = 1; seed <= 400; ++seed) {
+        Random random(seed);
+        const auto any = static_cast<std::uint32_t>(random.below(9));
+        const double angle = std::pow(10.0, random.uniform(-1, 1.95)) * degree;
+        PiecewiseLinearComplex input = any == 0   ? gen::make_mixture(seed)
+                                       : any == 1 ? gen::make_glued_tetrahedra(10, seed)
+                                       : any == 2 ? gen::make_fan(4, angle, seed)
+                                       : any == 3 ? gen::make_cone(4, angle, seed)
+                                       : any == 4 ? gen::make_plate(5, 4, 3, seed)
+                                       : any == 5 ? gen::make_soup(10, seed)
+                                       : any == 6 ? gen::make_flat_cloud(9, random.uniform(0.05, 1), seed)
+                                       : any == 7 ? gen::make_geology(3, 4, seed)
+                                                  : gen::make_umbrella(9, seed);
+        const double far = random.coin() ? 0.0 : std::pow(10.0, random.uniform(0, 5));
+        if (random.coin()) input = gen::make_moved(std::move(input), seed, {far, -far, far});
+        const Complex c = build_complex(input);
+        const FacetInterior interior = build_facet_interior(c);
+        const LocalFeatureSize size(c, interior);
+        for (const bool sharp : {true, false}) {
+            SCOPED_TRACE("seed " + std::to_string(seed) + (sharp ? " sharp" : " partial"));
+            const ProtectedSet set = sharp ? protect_sharp(c, interior) : random_set(c, random, random.uniform());
+            const double alpha = random.uniform(0.2, 0.49);
+            const BallOptions options{.alpha = alpha, .max_balls = 3000};
+            if (build_protecting_balls(c, size, set, options).outcome != Outcome::done) continue;
+            expect_protection(c, interior, size, set, alpha);
         }
     }
 }
