@@ -28,8 +28,8 @@ PiecewiseLinearComplex make_cone(std::uint32_t slivers, double width, std::uint6
 /// triangulation of the points contains them.
 PiecewiseLinearComplex make_star(std::uint32_t segments, double longest, std::uint64_t seed);
 
-/// Gores from an apex to an uneven rim, every second one flat, with a stick (a segment) below the apex and handle
-/// facets on it. 2 gores + ... vertices: apex, rim, stick, handles.
+/// Triangles from an apex to an uneven rim, a stick (a segment) hanging from the apex, and three fins at its lower end.
+/// gores + 6 vertices.
 PiecewiseLinearComplex make_umbrella(std::uint32_t gores, std::uint64_t seed);
 
 /// Two triangles with a common edge at angle `angle`, or, with `closed`, the prism over the wedge between them.
