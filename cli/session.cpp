@@ -144,6 +144,7 @@ void Session::require_writable(const FileArgument& file) const {
             file.path +
             ": the format cannot be told from the name; use .mesh, .vtu, .msh, .off, ... or --output-format");
     if (flags_.json == file.path) throw UsageError(file.path + ": the output and the report cannot be the same file");
+    if (std::filesystem::is_directory(file.path)) throw IoError(file.path, 0, "is a folder");
     const std::string folder = folder_of(file.path);
     if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(file.path, 0, "cannot write into the folder " + folder);
 }
@@ -205,7 +206,7 @@ ExitCode Session::run(const std::function<ExitCode()>& body) {
 }
 
 bool Session::write_report(ExitCode code) {
-    if (flags_.json.empty()) return true;
+    if (flags_.json.empty() || code == ExitCode::usage) return true;  // usage errors touch no file
     report_["stage_seconds"]["total"] = seconds_since(start_);
     report_["peak_memory_bytes"] = peak_memory();
     report_["exit_code"] = static_cast<int>(code);

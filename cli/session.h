@@ -80,12 +80,15 @@ public:
     ExitCode run(const std::function<ExitCode()>& body);
 
 private:
-    struct Timer {
+    class Timer {
+    public:
         Timer(Session& session, const char* stage)
             : session_(session), stage_(stage), start_(std::chrono::steady_clock::now()) {}
         Timer(const Timer&) = delete;
         Timer& operator=(const Timer&) = delete;
         ~Timer();
+
+    private:
         Session& session_;
         const char* stage_;
         std::chrono::steady_clock::time_point start_;

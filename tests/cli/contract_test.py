@@ -1,0 +1,433 @@
+#!/usr/bin/python3
+"""The contract of the command line: exit codes, streams, reports, whole files, signals.
+
+Run by ctest as `contract_test.py CERTA`; needs nothing but Python's own library. CERTA_SANITIZED=1 leaves out what a
+sanitizer makes impossible (limits on the address space).
+"""
+
+import json
+import os
+import pty
+import resource
+import select
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+
+CERTA = sys.argv.pop(1) if len(sys.argv) > 1 else "certa"
+SANITIZED = os.environ.get("CERTA_SANITIZED") == "1"
+
+CUBE = """OFF
+8 6 0
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+0 0 1
+1 0 1
+1 1 1
+0 1 1
+4 0 3 2 1
+4 4 5 6 7
+4 0 1 5 4
+4 1 2 6 5
+4 2 3 7 6
+4 3 0 4 7
+"""
+
+CROSSING = """OFF
+6 2 0
+0 0 0
+2 0 0
+0 2 0
+0.5 0.5 -1
+0.5 0.5 1
+1.5 1.5 1
+3 0 1 2
+3 3 4 5
+"""
+
+
+def terrain(side):
+    """A height field of 2 * side^2 triangles: valid, and enough work to be interrupted."""
+    count = side + 1
+    lines = ["OFF", f"{count * count} {2 * side * side} 0"]
+    for i in range(count):
+        for j in range(count):
+            height = ((i * 7919 + j * 104729) % 1000) / 900.0
+            lines.append(f"{i} {j} {height}")
+    for i in range(side):
+        for j in range(side):
+            a, b, c, d = i * count + j, (i + 1) * count + j, (i + 1) * count + j + 1, i * count + j + 1
+            lines.append(f"3 {a} {b} {c}")
+            lines.append(f"3 {a} {c} {d}")
+    return "\n".join(lines) + "\n"
+
+
+class CommandTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = folder.name
+        self.cube = self.write("cube.off", CUBE)
+        self.crossing = self.write("crossing.off", CROSSING)
+
+    def path(self, name):
+        return os.path.join(self.folder, name)
+
+    def write(self, name, text):
+        with open(self.path(name), "w") as file:
+            file.write(text)
+        return self.path(name)
+
+    def read(self, name):
+        with open(self.path(name), "rb") as file:
+            return file.read()
+
+    def run_certa(self, *arguments, **options):
+        options.setdefault("stdin", subprocess.DEVNULL if "input" not in options else None)
+        if "input" in options:
+            options.pop("stdin")
+        return subprocess.run([CERTA, *arguments], capture_output=True, cwd=self.folder, timeout=300, **options)
+
+    def expect(self, code, *arguments, **options):
+        """Runs and checks the exit code; returns standard error as text."""
+        done = self.run_certa(*arguments, **options)
+        text = done.stderr.decode()
+        self.assertEqual(done.returncode, code, f"{arguments}\n{text}")
+        return text
+
+    def report(self, code, *arguments, **options):
+        done = self.run_certa(*arguments, "--json", "-", **options)
+        self.assertEqual(done.returncode, code, done.stderr.decode())
+        report = json.loads(done.stdout)
+        self.assertEqual(report["exit_code"], code)
+        return report
+
+    def expect_no_strays(self, *expected):
+        """No file but the inputs and `expected`: no temporaries, no half results."""
+        inputs = {"cube.off", "crossing.off"}
+        self.assertEqual(set(os.listdir(self.folder)) - inputs, set(expected))
+
+
+class Usage(CommandTest):
+    def test_wrong_usage_exits_2_and_points_to_help(self):
+        for arguments in (
+            [],
+            ["frobnicate"],
+            ["conform"],
+            ["conform", "cube.off", "--frobnicate"],
+            ["conform", "cube.off", "extra.off"],
+            ["conform", "cube.off", "--alpha"],
+            ["conform", "cube.off", "--alpha", "0.5"],
+            ["conform", "cube.off", "--alpha", "-0.1"],
+            ["conform", "cube.off", "--alpha", "nan"],
+            ["conform", "cube.off", "--alpha", "0,4"],
+            ["conform", "cube.off", "--protect", "some"],
+            ["conform", "cube.off", "--max-points", "0"],
+            ["conform", "cube.off", "--max-points", "1.5"],
+            ["conform", "cube.off", "--planarity", "1 %"],
+            ["conform", "cube.off", "--planarity", "-1%"],
+            ["conform", "cube.off", "--threads", "0"],
+            ["conform", "cube.off", "--gabriel=maybe"],
+            ["conform", "cube.off", "--input-format", "dwg"],
+            ["conform", "cube.off", "-o", "out.off"],
+            ["conform", "cube.off", "-o", "out.unknown"],
+            ["conform", "cube.off", "-o", "-"],
+            ["conform", "cube.off", "-o", "-", "--output-format", "medit", "--json", "-"],
+            ["conform", "cube.off", "-o", "same.mesh", "--json", "same.mesh"],
+            ["check", "cube.off"],
+            ["convert", "cube.off"],
+        ):
+            with self.subTest(arguments=arguments):
+                self.assertTrue(self.expect(2, *arguments).strip())
+        self.expect_no_strays()
+
+    def test_help_has_an_example_and_every_option_a_line(self):
+        for command in ("conform", "check", "info", "convert"):
+            done = self.run_certa(command, "--help")
+            self.assertEqual(done.returncode, 0)
+            self.assertIn(f"Example:\n  certa {command} ", done.stdout.decode())
+            self.assertEqual(done.stderr, b"")
+        text = self.run_certa("conform", "--help").stdout.decode()
+        for option in ("--protect needed|sharp|all", "--planarity LENGTH", "default 0.4", "--reference id|marker"):
+            self.assertIn(option, text)
+
+    def test_version_names_commit_and_libraries(self):
+        done = self.run_certa("--version")
+        self.assertEqual(done.returncode, 0)
+        for word in ("certa ", "commit", "CGAL", "oneTBB", "GMP"):
+            self.assertIn(word, done.stdout.decode())
+
+
+class Files(CommandTest):
+    def test_missing_and_broken_files_exit_3_and_name_the_place(self):
+        self.assertIn("nowhere.off", self.expect(3, "info", "nowhere.off"))
+        truncated = CUBE.splitlines()[:7]
+        self.write("truncated.off", "\n".join(truncated) + "\n")
+        self.assertRegex(self.expect(3, "info", "truncated.off"), r"truncated\.off:\d+: ")
+        self.write("nan.off", CUBE.replace("1 1 0\n", "1 nan 0\n", 1))
+        self.assertRegex(self.expect(3, "conform", "nan.off"), r"nan\.off:5: ")
+        self.write("index.off", CUBE.replace("4 0 3 2 1", "4 0 3 2 8"))
+        self.assertRegex(self.expect(3, "convert", "index.off", "out.ply"), r"index\.off:11: ")
+        report = self.report(3, "info", "index.off")
+        self.assertEqual(report["error"]["channel"], "io")
+        self.assertEqual(report["error"]["line"], 11)
+        self.expect_no_strays("truncated.off", "nan.off", "index.off")
+
+    def test_unwritable_output_exits_3_and_leaves_nothing(self):
+        self.expect(3, "conform", "cube.off", "-o", "no/such/folder/out.mesh")
+        os.mkdir(self.path("taken.mesh"))
+        self.expect(3, "conform", "cube.off", "-o", "taken.mesh")
+        self.expect(3, "conform", "cube.off", "-o", "/dev/full", "--output-format", "medit")
+        self.expect(3, "convert", "cube.off", "/dev/full", "--output-format", "ply")
+        self.expect(3, "info", "cube.off", "--json", "no/such/folder/report.json")
+        self.expect_no_strays("taken.mesh")
+
+    def test_a_failing_run_keeps_the_old_file(self):
+        self.write("out.mesh", "precious")
+        self.expect(3, "conform", "crossing.off", "-o", "out.mesh")
+        self.expect(4, "conform", "cube.off", "--max-points", "3", "-o", "out.mesh")
+        self.assertEqual(self.read("out.mesh"), b"precious")
+        self.expect_no_strays("out.mesh")
+
+    def test_convert_keeps_every_bit_and_refuses_to_lose_anything(self):
+        self.write("odd.off", CUBE.replace("1 1 1\n", "0.1 1e-300 123456789.12345679\n", 1))
+        self.expect(0, "convert", "odd.off", "odd.ply")
+        self.expect(0, "convert", "odd.ply", "odd.obj")
+        self.expect(0, "convert", "odd.obj", "back.off")
+        self.expect(0, "convert", "odd.off", "straight.off")
+        self.assertEqual(self.read("back.off"), self.read("straight.off"))
+        self.expect(0, "conform", "cube.off", "-o", "cube.mesh")
+        text = self.expect(3, "convert", "cube.mesh", "cube.ply")
+        self.assertRegex(text, r"tetrahedra")
+        self.assertFalse(os.path.exists(self.path("cube.ply")))
+
+
+class Streams(CommandTest):
+    def test_standard_input_and_output(self):
+        self.expect(0, "conform", "cube.off", "-o", "cube.mesh")
+        done = self.run_certa("conform", "-", "--input-format", "off", "-o", "-", "--output-format", "medit",
+                              input=CUBE.encode())
+        self.assertEqual(done.returncode, 0, done.stderr.decode())
+        self.assertEqual(done.stdout, self.read("cube.mesh"))
+        done = self.run_certa("convert", "-", "-", "--input-format", "off", "--output-format", "off", input=CUBE.encode())
+        self.assertEqual(done.returncode, 0)
+        self.assertEqual(done.stdout.split()[0], b"OFF")
+
+    def test_nothing_on_standard_output_unasked_and_no_side_files(self):
+        for arguments in (["conform", "cube.off"], ["info", "cube.off"], ["conform", "cube.off", "-o", "out.mesh"]):
+            self.assertEqual(self.run_certa(*arguments).stdout, b"")
+        self.expect_no_strays("out.mesh")
+
+    def test_quiet_is_quiet_and_pipes_get_no_progress_bar(self):
+        self.assertEqual(self.expect(0, "conform", "cube.off", "--quiet"), "")
+        self.assertEqual(self.expect(0, "info", "cube.off", "--quiet"), "")
+        self.assertNotIn("\r", self.expect(0, "conform", "cube.off", "--verbose"))
+        self.assertTrue(self.expect(3, "conform", "crossing.off", "--quiet"))
+
+    def test_terminals_get_a_progress_bar(self):
+        self.write("terrain.off", terrain(60))
+        leader, follower = pty.openpty()
+        process = subprocess.Popen([CERTA, "conform", "terrain.off"], cwd=self.folder, stdin=subprocess.DEVNULL,
+                                   stdout=subprocess.DEVNULL, stderr=follower, env={**os.environ, "TERM": "xterm"})
+        os.close(follower)
+        text = b""
+        while True:
+            try:
+                part = os.read(leader, 4096)
+            except OSError:
+                break
+            if not part:
+                break
+            text += part
+        os.close(leader)
+        self.assertEqual(process.wait(timeout=300), 0, text.decode())
+        self.assertIn(b"\r", text)
+        self.assertIn(b"%", text)
+
+
+class Conform(CommandTest):
+    def test_report_has_the_promised_keys(self):
+        report = self.report(0, "conform", "cube.off", "-o", "cube.vtu")
+        for key in ("command", "version", "commit", "threads", "input", "options", "outcome", "mesh", "statistics",
+                    "check", "proved", "output", "stage_seconds", "peak_memory_bytes", "exit_code"):
+            self.assertIn(key, report)
+        self.assertEqual(report["outcome"], "done")
+        self.assertEqual(report["proved"], ["delaunay", "conforming", "faithful", "labelled"])
+        self.assertEqual(report["mesh"]["vertices"], 8)
+        self.assertEqual(report["mesh"]["regions"], 1)
+        self.assertEqual(report["input"]["facets"], 6)
+        self.assertEqual(report["check"]["violation_count"], 0)
+        self.assertGreater(report["peak_memory_bytes"], 1000000)
+        options = report["options"]
+        self.assertEqual(options["protection"], "needed")
+        self.assertEqual(options["alpha"], 0.4)
+        self.assertIsNone(options["max_points"])
+        self.assertAlmostEqual(options["planarity"], 1e-9 * 3**0.5, delta=1e-15)  # resolved to the input's unit
+        for stage in ("read", "conform", "check", "write", "total"):
+            self.assertGreaterEqual(report["stage_seconds"][stage], 0)
+
+    def test_lengths_may_be_percentages_of_the_diagonal(self):
+        options = self.report(0, "conform", "cube.off", "--planarity", "2%", "--min-feature", "1e-9")["options"]
+        self.assertAlmostEqual(options["planarity"], 0.02 * 3**0.5, delta=1e-12)
+        self.assertEqual(options["min_feature"], 1e-9)
+
+    def test_the_result_passes_the_check_in_every_volume_format(self):
+        for extra in (["cube.mesh"], ["cube.vtu"], ["cube.msh"], ["cube2.msh", "--msh-version", "2.2"], ["cube.node"],
+                      ["ascii.vtu", "--encoding", "ascii"]):
+            with self.subTest(extra=extra):
+                self.expect(0, "conform", "cube.off", "-o", *extra)
+                report = self.report(0, "check", extra[0], "--against", "cube.off")
+                self.assertIn("conforming", report["proved"])
+                self.assertGreater(report["check"]["tetrahedra_checked"], 0)
+                alone = self.report(0, "check", extra[0])
+                self.assertEqual(alone["proved"], ["well-formed", "delaunay"])
+
+    def test_a_spoiled_mesh_fails_the_check(self):
+        self.expect(0, "conform", "cube.off", "-o", "cube.mesh")
+        lines = self.read("cube.mesh").decode().splitlines()
+        at = lines.index("Tetrahedra")
+        count = int(lines[at + 1])
+        del lines[at + 2]
+        lines[at + 1] = str(count - 1)
+        self.write("spoiled.mesh", "\n".join(lines) + "\n")
+        report = self.report(1, "check", "spoiled.mesh", "--against", "cube.off")
+        self.assertGreater(report["check"]["violation_count"], 0)
+        violation = report["check"]["violations"][0]
+        self.assertEqual(len(violation["place"]), 3)
+        self.assertTrue(violation["message"])
+        self.assertIn("VIOLATED", self.expect(1, "check", "spoiled.mesh", "--against", "cube.off"))
+        # Another input than the one that the mesh was made from.
+        self.write("moved.off", CUBE.replace("1 1 1\n", "1 1 1.5\n", 1))
+        self.expect(0, "conform", "moved.off", "--triangulate", "-o", "moved.mesh")
+        self.expect(1, "check", "moved.mesh", "--against", "cube.off")
+
+    def test_bad_input_is_refused_with_elements_and_place(self):
+        text = self.expect(3, "conform", "crossing.off", "-o", "out.mesh")
+        self.assertIn("crossing_facets", text)
+        error = self.report(3, "conform", "crossing.off")["error"]
+        self.assertEqual(error["channel"], "input")
+        defect = error["defects"][0]
+        self.assertEqual(defect["kind"], "crossing_facets")
+        self.assertEqual(sorted(e["id"] for e in defect["elements"] if e["kind"] == "facet"), [1, 2])
+        self.assertEqual(len(defect["place"]), 3)
+        self.expect_no_strays()
+
+    def test_budgets_exit_4_and_partial_results_say_so(self):
+        report = self.report(4, "conform", "cube.off", "--max-points", "3", "-o", "out.mesh")
+        self.assertEqual(report["outcome"], "over_budget")
+        self.assertFalse(os.path.exists(self.path("out.mesh")))
+        for name in ("out.mesh", "out.vtu", "out.msh", "out.node"):
+            self.expect(4, "conform", "cube.off", "--max-points", "3", "-o", name, "--keep-partial")
+            self.assertIn(b"partial result", self.read(name))
+
+    def test_same_bytes_for_any_thread_count_and_locale(self):
+        self.write("terrain.off", terrain(12))
+        self.expect(0, "conform", "terrain.off", "-o", "one.mesh", "--threads", "1")
+        self.expect(0, "conform", "terrain.off", "-o", "four.mesh", "--threads", "4")
+        self.expect(0, "conform", "terrain.off", "-o", "local.mesh",
+                    env={**os.environ, "LC_ALL": "de_DE.UTF-8", "LANG": "de_DE.UTF-8"})
+        self.assertEqual(self.read("one.mesh"), self.read("four.mesh"))
+        self.assertEqual(self.read("one.mesh"), self.read("local.mesh"))
+
+    def test_references_are_ids_or_markers(self):
+        poly = ("4 3 0 1\n1 0 0 0 7\n2 1 0 0 7\n3 0 1 0 7\n4 0 0 1 7\n4 1\n1 0 11\n3 1 3 2\n1 0 12\n3 1 2 4\n"
+                "1 0 13\n3 2 3 4\n1 0 14\n3 1 4 3\n0\n0\n")
+        self.write("tet.poly", poly)
+        self.expect(0, "conform", "tet.poly", "-o", "id.mesh")
+        self.expect(0, "conform", "tet.poly", "-o", "marker.mesh", "--reference", "marker")
+
+        def triangle_references(name):
+            lines = self.read(name).decode().split("\n")
+            at = lines.index("Triangles")
+            return sorted(int(line.split()[3]) for line in lines[at + 2:at + 2 + int(lines[at + 1])])
+
+        self.assertEqual(triangle_references("id.mesh"), [1, 2, 3, 4])
+        self.assertEqual(triangle_references("marker.mesh"), [11, 12, 13, 14])
+
+    @unittest.skipIf(SANITIZED, "sanitizers reserve the address space")
+    def test_what_does_not_fit_into_memory_is_refused_before_work(self):
+        self.write("terrain.off", terrain(200))
+
+        def limit():
+            resource.setrlimit(resource.RLIMIT_AS, (200 << 20, 200 << 20))
+
+        text = self.expect(4, "conform", "terrain.off", "-o", "out.mesh", "--threads", "1", preexec_fn=limit)
+        self.assertIn("memory", text)
+        self.expect_no_strays("terrain.off")
+
+
+class Info(CommandTest):
+    def test_surface(self):
+        info = self.report(0, "info", "cube.off")["info"]
+        self.assertEqual(info["points"], 8)
+        self.assertEqual(info["surface"]["genus"], 0)
+        self.assertEqual(info["surface"]["euler_characteristic"], 2)
+        self.assertTrue(info["surface"]["closed"] and info["surface"]["manifold"])
+        self.assertEqual(info["surface"]["volume"], 1.0)
+        self.assertIn("genus 0", self.expect(0, "info", "cube.off"))
+
+    def test_volume(self):
+        self.expect(0, "conform", "cube.off", "-o", "cube.mesh")
+        info = self.report(0, "info", "cube.mesh")["info"]["tetrahedra"]
+        self.assertAlmostEqual(info["volume"], 1.0)
+        self.assertEqual(info["flat"] + info["inverted"], 0)
+
+    def test_self_intersections(self):
+        self.assertEqual(self.report(0, "info", "cube.off")["info"]["defects"], [])
+        defects = self.report(0, "info", "crossing.off")["info"]["defects"]
+        self.assertEqual([d["kind"] for d in defects], ["crossing_facets"])
+
+
+class Signals(CommandTest):
+    def start(self, *arguments, **options):
+        return subprocess.Popen([CERTA, *arguments], cwd=self.folder, stderr=subprocess.PIPE, **options)
+
+    def wait_for_stage(self, process, stage):
+        """Waits until --verbose has said that a stage is over."""
+        deadline = time.monotonic() + 120
+        text = b""
+        while stage not in text and time.monotonic() < deadline:
+            if select.select([process.stderr], [], [], 1)[0]:
+                part = os.read(process.stderr.fileno(), 4096)
+                if not part:
+                    break
+                text += part
+        self.assertIn(stage, text)
+
+    def interrupt_meshing(self, signals):
+        self.write("terrain.off", terrain(400))
+        self.write("out.mesh", "precious")
+        process = self.start("conform", "terrain.off", "-o", "out.mesh", "--verbose", stdin=subprocess.DEVNULL)
+        self.wait_for_stage(process, b"read:")
+        time.sleep(0.3)
+        self.assertIsNone(process.poll(), "the model is too small to interrupt its meshing")
+        for number in signals:
+            process.send_signal(number)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 130)
+        self.assertEqual(self.read("out.mesh"), b"precious")
+        self.expect_no_strays("terrain.off", "out.mesh")
+
+    def test_sigint_and_sigterm_end_with_130_and_leave_nothing(self):
+        self.interrupt_meshing([signal.SIGINT])
+        self.interrupt_meshing([signal.SIGTERM])
+
+    def test_a_second_signal_ends_at_once(self):
+        self.interrupt_meshing([signal.SIGINT, signal.SIGTERM])
+
+    def test_waiting_for_input_can_be_interrupted(self):
+        process = self.start("conform", "-", "--input-format", "off", stdin=subprocess.PIPE)
+        time.sleep(0.5)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(timeout=60), 130)
+        process.stdin.close()
+        process.stderr.close()
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
