@@ -131,6 +131,17 @@ void make_facets_of_polygons(PiecewiseLinearComplex& complex) {
     complex.hole_offsets.assign(complex.polygon_count() + 1, 0U);
 }
 
+std::string remark_line(const MeshDocument& document) {
+    std::string line;
+    for (const char c : document.remark) {
+        const char printable = c >= ' ' ? c : ' ';
+        // XML ends a comment at two dashes, Gmsh a section at a dollar sign.
+        const bool is_special = printable == '$' || (printable == '-' && line.ends_with('-'));
+        line += is_special ? '_' : printable;
+    }
+    return line;
+}
+
 std::vector<std::int32_t> meaningful(std::vector<std::int32_t> markers) {
     if (std::all_of(markers.begin(), markers.end(), [](std::int32_t m) { return m == 0; })) return {};
     return markers;

@@ -20,6 +20,9 @@ inline void close_polygon(PiecewiseLinearComplex& complex) {
     complex.polygon_offsets.push_back(static_cast<std::uint32_t>(complex.corners.size()));
 }
 
+/// The document's remark as one line that can stand in a comment of any format; empty if there is none.
+std::string remark_line(const MeshDocument& document);
+
 /// Markers as the document keeps them: an array of zeros says nothing and becomes empty.
 std::vector<std::int32_t> meaningful(std::vector<std::int32_t> markers);
 

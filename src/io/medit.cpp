@@ -206,7 +206,7 @@ std::string write_medit(const MeshDocument& document) {
     TextOutput out;
     out.reserve(complex.positions.size() * 64 + complex.corners.size() * 10 + document.tetrahedra.size() * 36);
     out << "MeshVersionFormatted 2\n";
-    if (!document.remark.empty()) out << "# " << document.remark << '\n';
+    if (!document.remark.empty()) out << "# " << remark_line(document) << '\n';
     out << "Dimension 3\n\nVertices\n" << complex.positions.size() << '\n';
     for (std::size_t i = 0; i < complex.positions.size(); ++i)
         out << complex.positions[i] << ' ' << (numbers.vertices.empty() ? 0 : numbers.vertices[i]) << '\n';

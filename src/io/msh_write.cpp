@@ -49,7 +49,7 @@ public:
             end_line();
         }
         out_ << "$EndMeshFormat\n";
-        if (!document_.remark.empty()) out_ << "$Comments\n" << document_.remark << "\n$EndComments\n";
+        if (!document_.remark.empty()) out_ << "$Comments\n" << remark_line(document_) << "\n$EndComments\n";
         if (version_2_) {
             write_nodes_2();
             write_elements_2();

@@ -126,7 +126,7 @@ NodeSet write_node_set(const MeshDocument& document) {
     const PiecewiseLinearComplex& complex = document.complex;
     const ElementNumbers numbers = choose_element_numbers(document);
     TextOutput nodes;
-    if (!document.remark.empty()) nodes << "# " << document.remark << '\n';
+    if (!document.remark.empty()) nodes << "# " << remark_line(document) << '\n';
     write_points(nodes, document);
     return {nodes.take(), write_tetrahedra(document, numbers.tetrahedra),
             write_cells(complex.polygon_count(), numbers.polygons,

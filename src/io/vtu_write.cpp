@@ -43,7 +43,7 @@ public:
     std::string write() {
         const PiecewiseLinearComplex& complex = document_.complex;
         out_ << "<?xml version=\"1.0\"?>\n";
-        if (!document_.remark.empty()) out_ << "<!-- " << document_.remark << " -->\n";
+        if (!document_.remark.empty()) out_ << "<!-- " << remark_line(document_) << " -->\n";
         out_ << "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\""
              << (std::endian::native == std::endian::little ? "LittleEndian" : "BigEndian")
              << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" << complex.positions.size()
