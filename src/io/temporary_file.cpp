@@ -140,6 +140,8 @@ void write_files(const std::vector<FileContent>& files) {
         struct stat status {};
         const bool exists = ::stat(file.path.c_str(), &status) == 0;
         if (exists && S_ISDIR(status.st_mode)) throw IoError(file.path, 0, "is a folder");
+        // Renaming would replace a write-protected file all the same.
+        if (exists && ::access(file.path.c_str(), W_OK) != 0) fail(file.path, "cannot write", errno);
         if (exists && !S_ISREG(status.st_mode)) {
             direct.push_back(&file);
             continue;

@@ -204,7 +204,7 @@ TEST(StlRoundTrip, IsBinaryWhereThatLosesNothing) {
 
 TEST(EmptyRoundTrip, EveryFormatWritesNothingAndReadsItBack) {
     for (const Format format :
-         {Format::off, Format::ply, Format::stl, Format::node, Format::medit, Format::vtu, Format::msh})
+         {Format::off, Format::obj, Format::ply, Format::stl, Format::node, Format::medit, Format::vtu, Format::msh})
         expect_round_trip({}, format);
 }
 
