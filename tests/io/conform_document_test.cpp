@@ -38,15 +38,15 @@ Sample make_sample(bool with_markers) {
     return sample;
 }
 
-void expect_same_mesh(const TetMesh& a, const TetMesh& b, bool with_sources) {
-    expect_same_numbers(a.positions, b.positions, "positions");
-    EXPECT_EQ(a.tetrahedra, b.tetrahedra);
-    EXPECT_EQ(a.tetrahedron_regions, b.tetrahedron_regions);
-    EXPECT_EQ(a.triangles, b.triangles);
-    EXPECT_EQ(a.triangle_facets, b.triangle_facets);
-    EXPECT_EQ(a.edges, b.edges);
-    EXPECT_EQ(a.edge_segments, b.edge_segments);
-    EXPECT_EQ(b.vertex_sources, with_sources ? a.vertex_sources : std::vector<VertexSource>());
+void expect_same_mesh(const TetMesh& read, const TetMesh& written, bool with_sources) {
+    expect_same_numbers(read.positions, written.positions, "positions");
+    EXPECT_EQ(read.tetrahedra, written.tetrahedra);
+    EXPECT_EQ(read.tetrahedron_regions, written.tetrahedron_regions);
+    EXPECT_EQ(read.triangles, written.triangles);
+    EXPECT_EQ(read.triangle_facets, written.triangle_facets);
+    EXPECT_EQ(read.edges, written.edges);
+    EXPECT_EQ(read.edge_segments, written.edge_segments);
+    EXPECT_EQ(read.vertex_sources, with_sources ? written.vertex_sources : std::vector<VertexSource>());
 }
 
 TEST(ConformDocument, MakeTetMeshInvertsMakeDocument) {

@@ -1,5 +1,6 @@
 // Real files: every model of CERTA_MODELS is read, with the counts of its INDEX.tsv, or refused as expected, and comes
 // back unchanged from every format that can carry it.
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -47,8 +48,14 @@ void expect_refusal(const std::string& folder, const std::string& name) {
 
 void expect_round_trips(const MeshDocument& document, const std::string& name) {
     SCOPED_TRACE(name);
+    const std::vector<std::uint32_t>& offsets = document.complex.polygon_offsets;
+    const bool has_needle = std::adjacent_find(offsets.begin(), offsets.end(), [](std::uint32_t a, std::uint32_t b) {
+                                return b - a == 2;
+                            }) != offsets.end();
     for (const Format format : {Format::off, Format::obj, Format::ply, Format::poly, Format::smesh, Format::medit,
                                 Format::vtu, Format::msh}) {
+        // In TetGen's files a facet of two corners is a segment.
+        if (has_needle && (format == Format::poly || format == Format::smesh)) continue;
         std::string text;
         try {
             text = format_document(document, format);
