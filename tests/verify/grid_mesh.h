@@ -1,0 +1,76 @@
+#pragma once
+// Valid meshes made by hand: boxes of unit cubes, each cut into six tetrahedra around its main diagonal (Kuhn), which
+// is Delaunay (all eight corners on one sphere) and face to face; complexes are drawn on the lattice.
+#include <certa/conforming.h>
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <set>
+#include <vector>
+
+namespace certa::test {
+
+struct Case {
+    TetMesh mesh;
+    PiecewiseLinearComplex complex;
+};
+
+using Place = std::array<int, 3>;
+using Loop = std::vector<Place>;
+
+class GridMesh {
+public:
+    GridMesh(int x, int y, int z) : size_{x, y, z} {}
+
+    /// Input points in the order of their first mention; corners of the other calls count as mentioned.
+    std::uint32_t point(const Place& p);
+    void segment(const Place& a, const Place& b);
+    /// A facet in the plane normal to `axis`: its polygons, its hole points, and the lower corners of the unit squares
+    /// that it covers.
+    void facet(int axis, const std::vector<Loop>& polygons, const std::vector<Point3>& holes,
+               const std::vector<Place>& squares);
+    /// A rectangle from `low` to `high` (equal in `axis`), counter-clockwise about +axis, or about -axis if `down`.
+    void rectangle(int axis, const Place& low, const Place& high, bool down = false);
+    /// The six sides of a box, normals outwards.
+    void box(const Place& low, const Place& high);
+    void region_hole(const Point3& p) {
+        complex_.region_holes.push_back({shift.x + scale * p.x, shift.y + scale * p.y, shift.z + scale * p.z});
+    }
+    /// Region of each unit cube; negative: left out. Default: 1 everywhere.
+    std::function<int(const Place&)> region_of = [](const Place&) { return 1; };
+
+    /// Lattice points that no segment or facet carries become isolated input points.
+    Case make();
+    /// As make(), over scaled and translated coordinates.
+    double scale = 1.0;
+    Point3 shift{};
+
+private:
+    Point3 position(const Place& p) const;
+    std::vector<Place> line(const Place& a, const Place& b) const;
+    void add_chain(std::uint32_t a, std::uint32_t b, const Place& pa, const Place& pb);
+    std::uint32_t vertex(const Place& p);
+
+    struct Square {
+        std::uint32_t facet;
+        int axis;
+        bool down;
+        Place corner;
+    };
+    Place size_;
+    PiecewiseLinearComplex complex_;
+    std::map<Place, std::uint32_t> points_;
+    std::vector<Place> places_;
+    std::vector<Square> squares_;
+    std::vector<std::array<Place, 2>> chains_;  // one per segment number
+    std::set<std::array<Place, 2>> known_;
+};
+
+/// One tetrahedron with its four faces as facets.
+Case one_tetrahedron();
+/// The unit cube in five or six tetrahedra, its sides as squares or triangles.
+Case cube(bool squares);
+Case cube_of_five();
+
+}  // namespace certa::test
