@@ -29,7 +29,7 @@ struct ConformOptions {
     bool keep_outside = false;     ///< emit region 0 up to the convex hull
     Length planarity{1e-9, true};  ///< largest distance of a facet's point from the facet's plane
     Length min_feature{1e-12, true};          ///< stop with Outcome::below_min_feature below this length
-    std::optional<std::uint64_t> max_points;  ///< stop with Outcome::over_budget above this number of vertices
+    std::optional<std::uint64_t> max_points = std::nullopt;  ///< stop with Outcome::over_budget above this number of vertices
 };
 
 /// Counts and times of one run; every length in the input's unit, every time in seconds.

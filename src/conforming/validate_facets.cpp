@@ -29,8 +29,14 @@ struct FacetResult {
 
 class FacetCheck {
 public:
-    FacetCheck(const PiecewiseLinearComplex& input, const Complex& complex, double planarity, std::uint32_t facet)
-        : input_(input), complex_(complex), planarity_(planarity), facet_(facet), frame_(complex.frames[facet]) {}
+    FacetCheck(const PiecewiseLinearComplex& input, const Complex& complex, const ConformOptions& options,
+               std::uint32_t facet)
+        : input_(input),
+          complex_(complex),
+          planarity_(options.planarity.resolve(complex.diagonal)),
+          triangulate_(options.triangulate),
+          facet_(facet),
+          frame_(complex.frames[facet]) {}
 
     FacetResult run() {
         if (complex_.facet_sides[facet_].empty() && complex_.facet_points[facet_].empty()) return {};
@@ -72,10 +78,14 @@ private:
         }
         for (const std::uint32_t v : complex_.facet_points[facet_]) look_at(v);
         if (result_.deviation <= planarity_) return true;
+        const std::string way_out = triangulate_
+                                        ? "it cannot be cut into triangles either, as its sides cross when it is "
+                                          "laid flat: divide it into simpler facets"
+                                        : "cut it with --triangulate, or raise --planarity";
         refuse(DefectKind::non_planar_facet, {self(), {ElementKind::vertex, worst}}, at(worst),
                vertex_name(worst) + ' ' + name_place(at(worst)) + " is " + name_number(result_.deviation) +
                    " away from the plane of " + facet_name(facet_) + ", more than the planarity of " +
-                   name_number(planarity_) + "; cut it with --triangulate, or raise --planarity");
+                   name_number(planarity_) + "; " + way_out);
         return false;
     }
 
@@ -228,6 +238,7 @@ private:
     const PiecewiseLinearComplex& input_;
     const Complex& complex_;
     const double planarity_;
+    const bool triangulate_;
     const std::uint32_t facet_;
     const Frame& frame_;
     FacetResult result_;
@@ -259,9 +270,8 @@ Pieces check_facets(const PiecewiseLinearComplex& input, const Complex& complex,
         if (!is_plain_triangle(input, f)) involved.push_back(f);
     }
     std::vector<FacetResult> results(involved.size());
-    const double planarity = options.planarity.resolve(complex.diagonal);
     tbb::parallel_for(std::size_t{0}, involved.size(),
-                      [&](std::size_t i) { results[i] = FacetCheck(input, complex, planarity, involved[i]).run(); });
+                      [&](std::size_t i) { results[i] = FacetCheck(input, complex, options, involved[i]).run(); });
     Pieces pieces;
     pieces.near.resize(facets, 0.0);
     pieces.simplices.reserve(facets);

@@ -188,7 +188,11 @@ private:
     /// A side of b both ends of which are within rounding of the plane of triangle a: does it run over the inside?
     void test_along(std::uint32_t a, std::uint32_t b, Feature edge) {
         const std::uint32_t facet = pieces_.owners[a];
-        if (!clip_to_piece(complex_, pieces_, a, ends_of(pieces_.simplices[b], edge), pieces_.near[facet])) return;
+        const auto ends = ends_of(pieces_.simplices[b], edge);
+        const auto& t = pieces_.simplices[a].vertices;
+        const auto is_on_plane = [&](std::uint32_t v) { return orient3d(at(t[0]), at(t[1]), at(t[2]), at(v)) == 0; };
+        if (is_on_plane(ends[0]) && is_on_plane(ends[1])) return;  // no matter of rounding
+        if (!clip_to_piece(complex_, pieces_, a, ends, pieces_.near[facet])) return;
         const std::uint32_t side = side_along(complex_, pieces_, b, edge);
         if (side == no_index || has_side(complex_, side, facet)) return;
         found(FindingKind::segment_near_facet, side, facet, a, b);
