@@ -90,6 +90,20 @@ struct RepairedComplex {
 RepairedComplex repair_complex(const PiecewiseLinearComplex& complex, const ConformOptions& options,
                                const RunControl& control = {});
 
+/// What makes a complex unfit for `conform`.
+struct ComplexDefects {
+    std::vector<Defect> defects;   ///< the first 10,000, in a fixed order
+    std::size_t defect_count = 0;  ///< all
+    std::vector<Defect> notes;     ///< legal, but worth a warning: what would be adopted or ignored
+};
+
+/// Finds every violation that `conform` would refuse, self-intersections among them, without meshing.
+///
+/// Guarantee: exact on the doubles given, up to `planarity`.
+/// Cost:      O(n log n + pairs of boxes that overlap); deterministic.
+ComplexDefects find_defects(const PiecewiseLinearComplex& complex, const ConformOptions& options = {},
+                            const RunControl& control = {});
+
 /// One PLC facet per polygon of the mesh.
 PiecewiseLinearComplex make_complex(const PolygonMesh& mesh);
 PiecewiseLinearComplex make_complex(const TriangleMesh& mesh);
