@@ -279,7 +279,7 @@ double check_added(const Subject& subject, const Chains& chains, Findings& findi
         if (!subject.sources) continue;
         const VertexSource& source = mesh.vertex_sources[v];
         const bool right = source.origin == VertexOrigin::segment ? s != no_index && source.index == s
-                           : source.origin == VertexOrigin::facet ? on_source[v] != 0
+                           : source.origin == VertexOrigin::facet ? s == no_index && on_source[v] != 0
                                                                   : false;
         if (right) continue;
         findings.add(
@@ -289,7 +289,7 @@ double check_added(const Subject& subject, const Chains& chains, Findings& findi
                      ? " is said to be an input point, but there are only " + std::to_string(subject.input_count())
                      : " is said to come from " +
                            show(source.origin == VertexOrigin::segment ? "segment" : "facet", source.index) +
-                           ", but is not on it"));
+                           ", but is not inside it"));
     }
     return largest;
 }

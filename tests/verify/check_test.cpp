@@ -1,16 +1,11 @@
 // Valid meshes pass.
 #include <gtest/gtest.h>
+#include <rapidcheck.h>
 
 #include "verify/grid_mesh.h"
 
 namespace certa::test {
 namespace {
-
-std::string text(const ConformingCheck& check) {
-    std::string s;
-    for (const Violation& v : check.violations) s += v.promise + ": " + v.message + "\n";
-    return s;
-}
 
 void expect_valid(const Case& c, bool full_hull) {
     const ConformingCheck check = check_conforming(c.mesh, c.complex);
@@ -136,6 +131,14 @@ TEST(CheckValid, hole_removed_and_nested) {
         };
         expect_valid(grid.make(), false);
     }
+}
+
+TEST(CheckValid, random_complexes) {
+    ASSERT_TRUE(rc::check([](std::uint64_t seed) {
+        const Case c = random_case(seed);
+        const ConformingCheck check = check_conforming(c.mesh, c.complex);
+        if (!check.ok()) RC_FAIL(text(check));
+    }));
 }
 
 }  // namespace

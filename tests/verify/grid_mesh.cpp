@@ -191,12 +191,22 @@ Case GridMesh::make() {
     return result;
 }
 
-namespace {
+std::string text(const ConformingCheck& check) {
+    std::string s;
+    for (const Violation& v : check.violations) s += v.promise + ": " + v.message + "\n";
+    return s;
+}
 
-/// Labels for a mesh whose every boundary face is a facet of its own, given as triangles.
-Case from_surface(std::vector<Point3> positions, std::vector<Tetrahedron> tetrahedra,
-                  const std::vector<std::vector<std::uint32_t>>& facets, const std::vector<Triangle>& triangles,
-                  const std::vector<std::uint32_t>& labels) {
+bool has(const ConformingCheck& check, const std::string& promise) {
+    for (const Violation& v : check.violations) {
+        if (v.promise == promise) return true;
+    }
+    return false;
+}
+
+Case make_case(std::vector<Point3> positions, std::vector<Tetrahedron> tetrahedra,
+               const std::vector<std::vector<std::uint32_t>>& facets, const std::vector<Triangle>& triangles,
+               const std::vector<std::uint32_t>& labels) {
     Case c;
     c.mesh.positions = c.complex.positions = std::move(positions);
     c.mesh.vertex_sources.assign(c.mesh.positions.size(), {VertexOrigin::input, 0});
@@ -220,6 +230,8 @@ Case from_surface(std::vector<Point3> positions, std::vector<Tetrahedron> tetrah
     return c;
 }
 
+namespace {
+
 Tetrahedron tetrahedron(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t d) {
     return {VertexId{a}, VertexId{b}, VertexId{c}, VertexId{d}};
 }
@@ -228,9 +240,9 @@ Triangle triangle(std::uint32_t a, std::uint32_t b, std::uint32_t c) { return {V
 }  // namespace
 
 Case one_tetrahedron() {
-    return from_surface({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {tetrahedron(0, 1, 2, 3)},
-                        {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}},
-                        {triangle(1, 2, 3), triangle(0, 3, 2), triangle(0, 1, 3), triangle(0, 2, 1)}, {0, 1, 2, 3});
+    return make_case({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {tetrahedron(0, 1, 2, 3)},
+                     {{1, 2, 3}, {0, 3, 2}, {0, 1, 3}, {0, 2, 1}},
+                     {triangle(1, 2, 3), triangle(0, 3, 2), triangle(0, 1, 3), triangle(0, 2, 1)}, {0, 1, 2, 3});
 }
 
 Case cube_of_five() {
@@ -245,10 +257,10 @@ Case cube_of_five() {
         labels.push_back(static_cast<std::uint32_t>(facets.size()));
         facets.push_back({index_of(t[0]), index_of(t[1]), index_of(t[2])});
     }
-    return from_surface(corners,
-                        {tetrahedron(0, 3, 6, 5), tetrahedron(0, 1, 3, 5), tetrahedron(0, 3, 2, 6),
-                         tetrahedron(0, 6, 4, 5), tetrahedron(3, 7, 6, 5)},
-                        facets, triangles, labels);
+    return make_case(corners,
+                     {tetrahedron(0, 3, 6, 5), tetrahedron(0, 1, 3, 5), tetrahedron(0, 3, 2, 6),
+                      tetrahedron(0, 6, 4, 5), tetrahedron(3, 7, 6, 5)},
+                     facets, triangles, labels);
 }
 
 Case cube(bool squares) {
@@ -267,7 +279,7 @@ Case cube(bool squares) {
         labels.push_back(static_cast<std::uint32_t>(facets.size()));
         facets.push_back({index_of(t[0]), index_of(t[1]), index_of(t[2])});
     }
-    return from_surface(c.mesh.positions, c.mesh.tetrahedra, facets, c.mesh.triangles, labels);
+    return make_case(c.mesh.positions, c.mesh.tetrahedra, facets, c.mesh.triangles, labels);
 }
 
 }  // namespace certa::test

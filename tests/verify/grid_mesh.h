@@ -67,6 +67,21 @@ private:
     std::set<std::array<Place, 2>> known_;
 };
 
+/// Labels for a mesh whose facets are polygons of its vertices and that has no added vertices: segments by number, one
+/// region.
+Case make_case(std::vector<Point3> positions, std::vector<Tetrahedron> tetrahedra,
+               const std::vector<std::vector<std::uint32_t>>& facets, const std::vector<Triangle>& triangles,
+               const std::vector<std::uint32_t>& triangle_facets);
+
+/// The Delaunay triangulation of random integer points, found by testing all quadruples, and a complex drawn on it:
+/// regions are unions of tetrahedra, facets are the triangles between them, each its own, some more are left dangling
+/// inside regions. Bounded regions may be left out as holes, and the outside may be dropped.
+Case random_case(std::uint64_t seed);
+
+/// Every violation on a line of its own.
+std::string text(const ConformingCheck& check);
+bool has(const ConformingCheck& check, const std::string& promise);
+
 /// One tetrahedron with its four faces as facets.
 Case one_tetrahedron();
 /// The unit cube in five or six tetrahedra, its sides as squares or triangles.
