@@ -122,6 +122,7 @@ Point3 any_normal(const PiecewiseLinearComplex& input, std::uint32_t polygon) {
 /// Newell normal of one polygon, unit length.
 Point3 newell_normal(const PiecewiseLinearComplex& input, std::uint32_t polygon) {
     const std::uint32_t begin = input.polygon_offsets[polygon], end = input.polygon_offsets[polygon + 1];
+    if (begin == end) return {0, 0, 1};
     const Sum3<double> fast = newell<double>(input, polygon, [](double a, double b) { return a - b; });
     const Point3 n{fast.x, fast.y, fast.z};
     double reach = 0.0;

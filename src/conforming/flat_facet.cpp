@@ -75,7 +75,7 @@ bool insert_sides(Cdt& cdt, VertexMap& handles, const FlatFacet& flat, const Pie
         return true;
     };
     for (const FlatSide& side : flat.sides) {
-        if (!insert_point(side.ends[0]) || !insert_point(side.ends[1])) return false;
+        if (side.ends[0] == side.ends[1] || !insert_point(side.ends[0]) || !insert_point(side.ends[1])) return false;
     }
     for (const std::uint32_t v : flat.points) {
         if (!insert_point(v)) return false;
