@@ -160,12 +160,13 @@ bool cone_contains(const Subject& subject, std::uint32_t v, const Tetrahedron& t
 /// c = 1? See the head of this file.
 bool covers_once(const Subject& subject, Findings& findings) {
     const auto& positions = subject.mesh.positions;
-    const auto lowest = static_cast<std::uint32_t>(
-        std::min_element(positions.begin(), positions.end(),
-                         [](const Point3& a, const Point3& b) {
-                             return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
-                         }) -
-        positions.begin());
+    const auto is_lower = [](const Point3& a, const Point3& b) {
+        return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z < b.z;
+    };
+    std::uint32_t lowest = no_index;
+    for (std::uint32_t v = 0; v < positions.size(); ++v) {
+        if (subject.used[v] && (lowest == no_index || is_lower(positions[v], positions[lowest]))) lowest = v;
+    }
     std::uint32_t first = no_index;
     bool once = true;
     for (std::uint32_t i = 0; i < subject.mesh.tetrahedra.size(); ++i) {
@@ -208,7 +209,8 @@ Domain check_domain(const Subject& subject, Findings& findings) {
     join_boundary(subject, domain, findings);
     find_hull(subject, domain);
     check_ends(subject, domain, findings);
-    const bool all_used = std::find(subject.used.begin(), subject.used.end(), 0) == subject.used.end();
+    bool all_used = true;
+    for (std::size_t v = 0; v < subject.used.size(); ++v) all_used = all_used && (subject.used[v] || subject.spare[v]);
     const bool all_on_hull = std::find(domain.on_hull.begin(), domain.on_hull.end(), 0) == domain.on_hull.end();
     domain.full_hull = domain.matched && findings.count(Promise::well_formed) == 0 && all_used && all_on_hull &&
                        covers_once(subject, findings);

@@ -45,7 +45,8 @@ void check_elements(const TetMesh& mesh, const std::vector<Element>& elements, E
     }
 }
 
-void check_positions_distinct(const Subject& subject, Findings& findings) {
+/// Input points that coincide may stay, as long as one of them alone is used: repair leaves the others so.
+void check_positions_distinct(Subject& subject, Findings& findings) {
     const auto& positions = subject.mesh.positions;
     std::vector<std::uint32_t> order(positions.size());
     std::iota(order.begin(), order.end(), 0u);
@@ -53,11 +54,26 @@ void check_positions_distinct(const Subject& subject, Findings& findings) {
         const Point3 &a = positions[i], &b = positions[j];
         return a.x != b.x ? a.x < b.x : a.y != b.y ? a.y < b.y : a.z != b.z ? a.z < b.z : i < j;
     });
-    for (std::size_t k = 1; k < order.size(); ++k) {
-        const std::uint32_t i = order[k - 1], j = order[k];
-        if (positions[i] != positions[j]) continue;
-        findings.add(Promise::well_formed, {vertex_ref(i), vertex_ref(j)}, positions[i],
-                     show_vertices({i, j}) + " are both at " + show(positions[i]));
+    const auto is_idle = [&](std::uint32_t v) {
+        return v < subject.input_count() && !subject.used[v] && subject.plc.is_isolated[v];
+    };
+    subject.spare.assign(positions.size(), 0);
+    for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+        while (end < order.size() && positions[order[end]] == positions[order[begin]]) ++end;
+        if (end == begin + 1) continue;
+        std::uint32_t kept = no_index;
+        for (std::size_t k = begin; k < end; ++k) {
+            const std::uint32_t v = order[k];
+            if (is_idle(v)) continue;
+            if (kept != no_index) {
+                findings.add(Promise::well_formed, {vertex_ref(kept), vertex_ref(v)}, positions[v],
+                             show_vertices({kept, v}) + " are both at " + show(positions[v]));
+            }
+            kept = v;
+        }
+        for (std::size_t k = begin; k < end; ++k) {
+            subject.spare[order[k]] = kept != no_index && subject.used[kept] && is_idle(order[k]);
+        }
     }
 }
 

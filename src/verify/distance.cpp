@@ -27,11 +27,13 @@ double distance_to_segment(const Point3& p, const Point3& a, const Point3& b) {
 }
 
 FacetPlane::FacetPlane(const std::vector<Point3>& corners, const NewellNormal& normal) {
-    for (const Point3& p : corners) origin_ = origin_ + Vec<long double>{p.x, p.y, p.z};
-    if (!corners.empty()) origin_ = (1.0L / static_cast<long double>(corners.size())) * origin_;
-    normal_ = normal.approximate();
-    const long double length = norm(normal_);
-    normal_ = length > 0.0L ? (1.0L / length) * normal_ : Vec<long double>{};
+    // About the first corner: far from the origin the sum of the coordinates would lose bits.
+    for (const Point3& p : corners) origin_ = origin_ + difference(corners[0], p);
+    if (!corners.empty()) {
+        const Vec<long double> first{corners[0].x, corners[0].y, corners[0].z};
+        origin_ = first + (1.0L / static_cast<long double>(corners.size())) * origin_;
+    }
+    normal_ = normal.direction();
 }
 
 double FacetPlane::distance(const Point3& p) const {

@@ -255,9 +255,10 @@ void merge_facets(const PiecewiseLinearComplex& complex, const FacetSides& facet
     std::vector<std::uint32_t> counts(plc.segments.size(), 0);
     for (std::uint32_t f = 0; f < plc.facet_count(); ++f) {
         for (std::uint64_t i = facets.offsets[f]; i < facets.offsets[f + 1]; ++i) {
-            const std::uint32_t s = facets.sides[i].segment;
-            if (counts[s] < 2) users[s][counts[s]] = f;
-            ++counts[s];
+            const PlcSide& side = facets.sides[i];
+            if (counts[side.segment] < 2) users[side.segment][counts[side.segment]] = f;
+            // A side that its facet does not end at cannot be what two facets have in common.
+            counts[side.segment] += side.cover != 0 ? 1 : 3;
         }
     }
     const auto find = [&](std::uint32_t f) {

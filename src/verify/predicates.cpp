@@ -152,9 +152,16 @@ Vec<mpz_class> exact_area(const std::vector<Point3>& ring, int& exponent) {
     return sum;
 }
 
-Vec<long double> extended_difference(const Point3& from, const Point3& to) {
-    return {static_cast<long double>(to.x) - from.x, static_cast<long double>(to.y) - from.y,
-            static_cast<long double>(to.z) - from.z};
+/// The leading 64 bits of value / 2^shift.
+long double leading_bits(const mpz_class& value, long shift) {
+    mpz_class rest = abs(value);
+    if (shift > 0) {
+        rest >>= static_cast<unsigned long>(shift);
+    } else {
+        rest <<= static_cast<unsigned long>(-shift);
+    }
+    const auto bits = static_cast<long double>(mpz_get_ui(rest.get_mpz_t()));
+    return sgn(value) < 0 ? -bits : bits;
 }
 
 }  // namespace
@@ -168,8 +175,6 @@ NewellNormal::NewellNormal(std::vector<Point3> ring) : ring_(std::move(ring)) {
         const Vec<Bounded> u = bounded_difference(ring_[0], ring_[i]), v = bounded_difference(ring_[0], ring_[i + 1]);
         filtered_ = filtered_ && is_filtered(u) && is_filtered(v);
         bounded_ = bounded_ + cross_of(u, v);
-        approximate_ = approximate_ +
-                       cross_of(extended_difference(ring_[0], ring_[i]), extended_difference(ring_[0], ring_[i + 1]));
     }
     filtered_ = filtered_ && ring_.size() < (std::size_t{1} << 19);
     constexpr int cross = cross_of(leaves, leaves).x.roundings;
@@ -182,6 +187,17 @@ const Vec<mpz_class>& NewellNormal::exact() const {
         exact_ = std::make_unique<Vec<mpz_class>>(ring_.size() < 3 ? Vec<mpz_class>{} : exact_area(ring_, exponent));
     }
     return *exact_;
+}
+
+Vec<long double> NewellNormal::direction() const {
+    const Vec<mpz_class>& n = exact();
+    const auto bits = [](const mpz_class& c) {
+        return c == 0 ? 0 : static_cast<long>(mpz_sizeinbase(c.get_mpz_t(), 2));
+    };
+    const long shift = std::max({bits(n.x), bits(n.y), bits(n.z)}) - 64;
+    if (shift == -64) return {};
+    const Vec<long double> v{leading_bits(n.x, shift), leading_bits(n.y, shift), leading_bits(n.z, shift)};
+    return (1.0L / std::sqrt(dot_of(v, v))) * v;
 }
 
 int NewellNormal::side(const Arrow& first, const Arrow& second) const {

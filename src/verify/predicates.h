@@ -64,8 +64,8 @@ public:
     int turn(const std::vector<Point3>& polygon) const;
     /// Compares the areas of two closed polygons seen along the normal: sign of first - second.
     int compare_areas(const std::vector<Point3>& first, const std::vector<Point3>& second) const;
-    /// In extended precision, not normalised; for distances only.
-    const Vec<long double>& approximate() const { return approximate_; }
+    /// Unit length, good to the last bits of extended precision however thin the polygon; zero when it has no area.
+    Vec<long double> direction() const;
 
 private:
     mpz_class area_along(const std::vector<Point3>& polygon, int& exponent) const;
@@ -75,7 +75,6 @@ private:
     bool filtered_ = true;
     int roundings_ = 0;
     Vec<Bounded> bounded_{};
-    Vec<long double> approximate_{};
     mutable std::unique_ptr<Vec<mpz_class>> exact_;
 };
 

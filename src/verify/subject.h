@@ -38,6 +38,7 @@ struct Subject {
     bool tetrahedron_labels = false, triangle_labels = false, edge_labels = false, sources = false;
 
     std::vector<std::uint8_t> used{};      ///< per vertex: a corner of a tetrahedron
+    std::vector<std::uint8_t> spare{};     ///< per vertex: an isolated input point in the place of a corner
     std::vector<std::uint8_t> walls{};     ///< per half-face: a constraint triangle
     std::vector<std::uint8_t> positive{};  ///< per tetrahedron
 

@@ -151,6 +151,30 @@ TEST(CheckBroken, unused_vertex) {
     shift(c.mesh.edges);
     expect_broken(c, "delaunay");
 }
+TEST(CheckValid, coincident_input_points_that_repair_left_over) {
+    for (const Case& b : {base(), base_outside_kept(), one_tetrahedron()}) {
+        Case c = b;
+        // The new input points come right after the others.
+        const auto first = static_cast<std::uint32_t>(c.complex.positions.size());
+        const auto shift = [&](auto& elements) {
+            for (auto& e : elements) {
+                for (VertexId& v : e) v = VertexId{index_of(v) + (index_of(v) >= first ? 2 : 0)};
+            }
+        };
+        shift(c.mesh.tetrahedra);
+        shift(c.mesh.triangles);
+        shift(c.mesh.edges);
+        for (int i = 0; i < 2; ++i) {
+            c.complex.positions.push_back(c.complex.positions[0]);
+            c.mesh.positions.insert(c.mesh.positions.begin() + first, c.complex.positions[0]);
+            c.mesh.vertex_sources.insert(c.mesh.vertex_sources.begin() + first, VertexSource{});
+        }
+        expect_fine(c);
+        EXPECT_TRUE(check_conforming(c.mesh, c.complex).full_hull);
+        c.complex.segments.push_back({VertexId{first}, VertexId{1}});
+        expect_broken(c, "well-formed");
+    }
+}
 TEST(CheckBroken, hull_filled_twice) {
     // Kuhn's six tetrahedra and the five of the other cut, on the same corners: all empty circumballs, all positive.
     Case c = cube(false);
