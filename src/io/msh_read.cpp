@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <set>
 #include <unordered_map>
 
 #include "io/byte_cursor.h"
@@ -514,6 +515,16 @@ private:
 
     // --- tags ---
 
+    /// Do elementary tags say anything beside the physical ones, where there are any?
+    static bool says_more(const std::vector<std::int64_t>& elementary, const std::vector<std::int64_t>& physical) {
+        std::set<std::int64_t> others;
+        for (std::size_t i = 0; i < physical.size(); ++i) {
+            if (physical[i] == 0) others.insert(elementary[i]);
+            if (physical[i] != 0 && physical[i] != elementary[i]) return true;
+        }
+        return others.size() > 1;
+    }
+
     void take_tags() {
         if (several_physicals_)
             document_.notes.push_back("of several physical tags of an entity only the first is read");
@@ -526,7 +537,7 @@ private:
             const bool differ =
                 std::adjacent_find(elementary.begin(), elementary.end(), std::not_equal_to<>()) != elementary.end();
             if (!has_physical && !differ) continue;
-            if (has_physical && differ && physical != elementary)
+            if (has_physical && differ && says_more(elementary, physical))
                 document_.notes.push_back(std::string("elementary tags of ") + name_of(cell_locations[k]) +
                                           " are left out");
             std::array<NumberArray, 3> parts;

@@ -1,8 +1,9 @@
 // Gmsh's .msh, version 4.1 or 2.2, text or binary. Elements are the segments, the polygons, then the tetrahedra, tagged
 // from 1 in this order. Every field, label and marker is an array over all elements ($ElementData), 0 where a kind has
-// none. So that Gmsh's own tools see them, the number of each element (reference, see MeshDocument) is also its
-// physical tag and its entity; elements without a positive one share an entity without a physical tag. Version 4.1
-// keeps elements by entity: one block per run of equal entities keeps their order.
+// none; markers alone need no array, because the tags say them. So that Gmsh's own tools see them, the number of each
+// element (reference, see MeshDocument) is also its physical tag and its entity; elements without a positive one share
+// an entity without a physical tag. Version 4.1 keeps elements by entity: one block per run of equal entities keeps
+// their order.
 #include <algorithm>
 #include <bit>
 #include <cstring>
@@ -304,8 +305,27 @@ private:
                 write_array("NodeData", field.name, field.components, field.values);
     }
 
+    /// Do the physical tags say all that the markers say? Not beside labels, nor if one is negative.
+    bool tags_carry_markers() const {
+        for (const Group& group : groups_) {
+            for (const char* label : {"region", "facet", "segment"})
+                if (find_field(document_, label, group.location) != nullptr) return false;
+            const auto* markers = find_markers(complex_, group.location);
+            const auto* field = find_integers(document_, "marker", group.location);
+            const auto fits = [](std::int64_t m) { return 0 <= m && m < std::numeric_limits<std::int32_t>::max(); };
+            if (markers != nullptr && !std::all_of(markers->begin(), markers->end(), fits)) return false;
+            if (field != nullptr && !std::all_of(field->begin(), field->end(), fits)) return false;
+            // An array of zeros is something that tags cannot say.
+            if (field != nullptr && std::all_of(field->begin(), field->end(), [](std::int64_t m) { return m == 0; }))
+                return false;
+        }
+        return true;
+    }
+
     void write_element_data() {
+        const bool skips_markers = tags_carry_markers();
         for (const std::string& name : cell_array_names(document_)) {
+            if (name == "marker" && skips_markers) continue;
             const std::uint32_t components = cell_array_components(document_, name);
             // merged_cell_array goes from tetrahedra to segments, elements of this file the other way.
             std::visit(

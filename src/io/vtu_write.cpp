@@ -49,7 +49,8 @@ public:
              << "\" header_type=\"UInt64\">\n<UnstructuredGrid>\n<Piece NumberOfPoints=\"" << complex.positions.size()
              << "\" NumberOfCells=\"" << cell_count() << "\">\n<Points>\n";
         // Point3 is three doubles without padding.
-        write_array<double>("Points", 3, {&complex.positions.data()->x, complex.positions.size() * 3});
+        const double* coordinates = complex.positions.empty() ? nullptr : &complex.positions.front().x;
+        write_array<double>("Points", 3, {coordinates, complex.positions.size() * 3});
         out_ << "</Points>\n<Cells>\n";
         write_cells();
         out_ << "</Cells>\n<PointData>\n";

@@ -147,8 +147,17 @@ TEST_P(RoundTrip, Vtu) {
 TEST_P(RoundTrip, Msh) {
     MeshDocument document = volume(random);
     for (int i = 0; i < 6; ++i) add_polygon(document, 3 + random() % 2, random);
-    for (const bool labelled : {false, true}) {
-        if (labelled) {
+    for (const int step : {0, 1, 2}) {
+        if (step == 1) {
+            // Positive markers travel as tags.
+            document.complex.facet_markers.assign(document.complex.facet_count(), 0);
+            for (std::int32_t& marker : document.complex.facet_markers)
+                marker = static_cast<std::int32_t>(random() % 4);
+            document.complex.facet_markers[0] = 2147483646;
+            if (!document.complex.segments.empty())
+                document.complex.segment_markers.assign(document.complex.segments.size(), 3);
+        }
+        if (step == 2) {
             add_all_markers(document, random);
             const std::size_t points = document.complex.positions.size(), polygons = document.complex.polygon_count();
             document.fields.push_back(random_field("a name", Location::vertices, points, 1, random));
