@@ -7,6 +7,7 @@
 // Facets are compared piece by piece; the points where an intersection passes from one piece of a facet to the next are
 // no points of the complex, and the parts that meet there are joined again.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 #include <set>
@@ -21,31 +22,60 @@ namespace {
 
 using Ids = std::vector<std::uint32_t>;
 
-/// Makes the points of a plan, and finds them again.
+/// Makes the points of a plan, and finds again what is already there: where three facets meet, the point is computed
+/// from each pair of their intersections, and comes out a few units in the last place apart.
 class PointMaker {
 public:
     PointMaker(const Complex& complex, RepairPlan& plan) : complex_(complex), plan_(plan) {
-        for (std::uint32_t v = 0; v < complex.points.size(); ++v) known_.emplace(key_of(complex.points[v]), v);
+        double largest = 0.0;
+        for (const Point3& p : complex.points) {
+            largest = std::max({largest, std::abs(p.x), std::abs(p.y), std::abs(p.z)});
+        }
+        reach_ = 64.0 * std::numeric_limits<double>::epsilon() * largest;
+        for (std::uint32_t v = 0; v < complex.points.size(); ++v) {
+            const bool used = !complex.point_segments[v].empty() || !complex.point_facets[v].empty();
+            if (used) cells_.emplace(cell_of(complex.points[v]), v);
+        }
     }
 
-    /// The point at `place`: one of `candidates` within rounding, one at the same place, or a new one.
-    std::uint32_t make(const Point3& place, std::initializer_list<std::span<const std::uint32_t>> candidates) {
-        for (const auto& list : candidates) {
-            for (const std::uint32_t v : list) {
-                if (distance(complex_.points[v], place) <= near_of(complex_.points, {&v, 1})) return v;
+    /// The nearest point within rounding of `place`, or a new one.
+    std::uint32_t make(const Point3& place) {
+        std::set<Cell> around;
+        for (const double x : {place.x - reach_, place.x + reach_}) {
+            for (const double y : {place.y - reach_, place.y + reach_}) {
+                for (const double z : {place.z - reach_, place.z + reach_}) around.insert(cell_of({x, y, z}));
             }
         }
+        std::pair<double, std::uint32_t> best{reach_, no_index};
+        for (const Cell& cell : around) {
+            const auto [begin, end] = cells_.equal_range(cell);
+            for (auto it = begin; it != end; ++it) best = std::min(best, {distance(at(it->second), place), it->second});
+        }
+        if (best.second != no_index) return best.second;
         const auto fresh = static_cast<std::uint32_t>(complex_.points.size() + plan_.new_points.size());
-        const auto [it, inserted] = known_.emplace(key_of(place), fresh);
-        if (inserted) plan_.new_points.push_back(place);
-        return it->second;
+        plan_.new_points.push_back(place);
+        cells_.emplace(cell_of(place), fresh);
+        return fresh;
     }
 
 private:
-    static std::array<double, 3> key_of(const Point3& p) { return {p.x + 0.0, p.y + 0.0, p.z + 0.0}; }
+    using Cell = std::array<double, 3>;
+
+    const Point3& at(std::uint32_t v) const {
+        const std::size_t count = complex_.points.size();
+        return v < count ? complex_.points[v] : plan_.new_points[v - count];
+    }
+
+    /// Cells are wider than twice the reach, so that the corners of the box around a place name all cells it touches.
+    Cell cell_of(const Point3& p) const {
+        const double width = std::max(4.0 * reach_, std::numeric_limits<double>::min());
+        return {std::floor(p.x / width), std::floor(p.y / width), std::floor(p.z / width)};
+    }
+
     const Complex& complex_;
     RepairPlan& plan_;
-    std::map<std::array<double, 3>, std::uint32_t> known_;
+    double reach_ = 0.0;
+    std::multimap<Cell, std::uint32_t> cells_;
 };
 
 class Planner {
@@ -157,7 +187,7 @@ private:
     std::uint32_t cross(std::uint32_t s, std::uint32_t t, const Point3& place) {
         if (s > t) std::swap(s, t);
         const auto [it, fresh] = segment_points_.emplace(std::make_pair(s, t), 0);
-        if (fresh) it->second = maker_.make(place, {complex_.segments[s], complex_.segments[t]});
+        if (fresh) it->second = maker_.make(place);
         split(DefectKind::crossing_segments, s, it->second);
         split(DefectKind::crossing_segments, t, it->second);
         return it->second;
@@ -276,18 +306,14 @@ private:
         }
         const std::uint32_t s = side_of(a, node.carriers[0]), t = side_of(b, node.carriers[1]);
         if (s == no_index && t == no_index) return;  // between pieces of one facet: no point of the complex
-        const Simplex &p = pieces_.simplices[a], &q = pieces_.simplices[b];
-        const Point3 place = place_of(complex_.points, p, q, contact);
+        const Point3 place = place_of(complex_.points, pieces_.simplices[a], pieces_.simplices[b], contact);
         if (s != no_index && t != no_index) {
             graph.points[node] = cross(s, t, place);
             return;
         }
         const std::uint32_t segment = s != no_index ? s : t, facet = pieces_.owners[s != no_index ? b : a];
         const auto [it, fresh] = facet_points_.emplace(std::make_pair(segment, facet), 0);
-        if (fresh) {
-            it->second = maker_.make(
-                place, {complex_.segments[segment], {p.vertices.data(), p.size}, {q.vertices.data(), q.size}});
-        }
+        if (fresh) it->second = maker_.make(place);
         split(DefectKind::crossing_facets, segment, it->second);
         graph.points[node] = it->second;
     }
