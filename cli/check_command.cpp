@@ -19,6 +19,7 @@ struct CheckArguments {
     CommonFlags common;
     FileArgument file, against;
     ConformingCheckOptions options;
+    ConformOptions repairs;  // `repair` and `triangulate` of the run that made the mesh
 };
 
 /// The complex of the mesh's own constraints: every triangle a facet, every edge a segment; `mesh` is relabelled so.
@@ -55,6 +56,15 @@ void say_violations(Session& session, const ConformingCheck& check) {
     if (check.violation_count > shown) session.say("... " + counted(check.violation_count - shown, "more violation"));
 }
 
+/// The complex that the mesh was made from, after the repairs that it was made with.
+PiecewiseLinearComplex read_against(Session& session, const CheckArguments& arguments) {
+    PiecewiseLinearComplex complex = session.read(arguments.against, "against").complex;
+    if (!arguments.repairs.repair && !arguments.repairs.triangulate) return complex;
+    ConformOptions options = arguments.repairs;
+    options.planarity = arguments.options.planarity;
+    return repair_complex(complex, options).complex;
+}
+
 ExitCode run_check(Session& session, const CheckArguments& arguments) {
     const MeshDocument document = session.read(arguments.file, "input");
     if (document.tetrahedra.empty())
@@ -63,8 +73,7 @@ ExitCode run_check(Session& session, const CheckArguments& arguments) {
                          "describes surfaces and complexes");
     TetMesh mesh = make_tet_mesh(document);
     const bool alone = !arguments.against.given();
-    const PiecewiseLinearComplex complex =
-        alone ? own_complex(mesh) : session.read(arguments.against, "against").complex;
+    const PiecewiseLinearComplex complex = alone ? own_complex(mesh) : read_against(session, arguments);
     ConformingCheck check = session.timed("check", [&] {
         const GracefulScope graceful;
         return check_conforming(mesh, complex, arguments.options, session.control());
@@ -102,6 +111,8 @@ void add_check_command(CLI::App& app, Action& action) {
     add_format_option(*command, "--input-format", arguments->file);
     add_format_option(*command, "--against-format", arguments->against);
     add_options(*command, frontend::conforming_check_options(), arguments->options);
+    command->add_flag("--repair", arguments->repairs.repair, "the mesh was made with --repair");
+    command->add_flag("--triangulate", arguments->repairs.triangulate, "the mesh was made with --triangulate");
     add_common_flags(*command, arguments->common);
     command->callback([arguments, &action] {
         action = [arguments] {

@@ -117,22 +117,41 @@ ExitCode end_unfinished(Session& session, const ConformArguments& arguments, con
     return ExitCode::unable;
 }
 
+/// The input, mended where --repair and --triangulate ask for it, with what was done in the report.
+PiecewiseLinearComplex repaired(Session& session, const ConformArguments& arguments,
+                                const PiecewiseLinearComplex& complex) {
+    if (!arguments.options.repair && !arguments.options.triangulate) return complex;
+    RepairedComplex result = session.timed("repair", [&] {
+        const GracefulScope graceful;
+        return repair_complex(complex, arguments.options, session.control());
+    });
+    session.note_defects("repairs", result.repairs);
+    Json& sources = session.report()["facet_sources"] = Json::array();  // of the facets after the input's own
+    for (std::size_t f = complex.facet_count(); f < result.facet_sources.size(); ++f)
+        sources.push_back(std::uint64_t{index_of(result.facet_sources[f])} + 1);
+    return std::move(result.complex);
+}
+
 ExitCode run_conform(Session& session, const ConformArguments& arguments) {
     if (arguments.output.given()) require_volume_format(session, arguments.output);
     const MeshDocument input = session.read(arguments.input, "input");
-    const PiecewiseLinearComplex& complex = input.complex;
     if (!input.tetrahedra.empty())
         session.warn("the input's " + counted(input.tetrahedra.size(), "tetrahedron is", "tetrahedra are") +
                      " not used; its points, segments and polygons are");
-    session.report()["options"] = to_json(frontend::conform_options(), arguments.options, diagonal_of(complex));
+    session.report()["options"] = to_json(frontend::conform_options(), arguments.options, diagonal_of(input.complex));
     session.report()["options"]["reference"] =
         frontend::value_of(frontend::output_options().back(), arguments.output_options);
     session.report()["options"]["verify"] = !arguments.no_verify;
-    session.require_memory(estimated_bytes(complex), "meshing " + counted(complex.positions.size(), "point") + " and " +
-                                                         counted(complex.facet_count(), "facet"));
+    session.require_memory(estimated_bytes(input.complex), "meshing " +
+                                                               counted(input.complex.positions.size(), "point") +
+                                                               " and " + counted(input.complex.facet_count(), "facet"));
+    // From here on the complex is the repaired one: it is what the mesh conforms to and is checked against.
+    const PiecewiseLinearComplex complex = repaired(session, arguments, input.complex);
+    ConformOptions options = arguments.options;
+    options.repair = options.triangulate = false;
     const ConformResult result = session.timed("conform", [&] {
         const GracefulScope graceful;
-        return conform(complex, arguments.options, session.control());
+        return conform(complex, options, session.control());
     });
     report_mesh(session, result);
     if (result.outcome != Outcome::done) return end_unfinished(session, arguments, result, complex);

@@ -1,10 +1,15 @@
 // `certa info FILE`: what a file holds, in numbers.
+#include <certa/conforming.h>
 #include <certa/info.h>
 
+#include <algorithm>
+#include <array>
+#include <map>
 #include <memory>
 #include <numbers>
 
 #include "commands.h"
+#include "interrupt.h"
 #include "report.h"
 #include "session.h"
 
@@ -89,6 +94,26 @@ void say_info(Session& session, const MeshDocument& document, const DocumentInfo
                     ", " + counted(field.components, "component"));
 }
 
+/// What `conform` would refuse, self-intersections among them.
+void find_and_say_defects(Session& session, const PiecewiseLinearComplex& complex) {
+    const ComplexDefects found = session.timed("find_defects", [&] {
+        const GracefulScope graceful;
+        return find_defects(complex, {}, session.control());
+    });
+    session.report()["info"]["defects"] = to_json(found.defects);
+    session.report()["info"]["defect_count"] = found.defect_count;
+    std::map<std::string, std::size_t> kinds;
+    for (const Defect& defect : found.defects) ++kinds[name_of(defect.kind)];
+    std::vector<std::string> counts;
+    for (const auto& [kind, count] : kinds) counts.push_back(text_of_count(count) + " " + kind);
+    if (found.defects.empty())
+        session.say("valid        no self-intersections or other defects: `conform` takes it");
+    else
+        session.say("invalid      " + joined(counts) + ": `conform` refuses it");
+    for (std::size_t i = 0; i < std::min<std::size_t>(3, found.defects.size()); ++i)
+        session.say("             " + found.defects[i].message);
+}
+
 ExitCode run_info(Session& session, const InfoArguments& arguments) {
     const MeshDocument document = session.read(arguments.input, "input");
     const DocumentInfo info = session.timed("info", [&] { return compute_info(document); });
@@ -101,6 +126,10 @@ ExitCode run_info(Session& session, const InfoArguments& arguments) {
                           {"components", field.components}});
     session.report()["info"]["fields"] = fields;
     say_info(session, document, info);
+    // The constraint triangles of a volume mesh may coincide on purpose.
+    if (document.tetrahedra.empty() && document.complex.polygon_count() + document.complex.segments.size() > 0)
+        find_and_say_defects(session, document.complex);
+    if (interrupt_flag()) return ExitCode::interrupted;
     return ExitCode::done;
 }
 
