@@ -28,11 +28,66 @@ std::map<std::pair<std::uint32_t, std::uint32_t>, Chain> order_splits(const Repa
     return chains;
 }
 
+void merge_points(const RepairPlan& plan, EditableComplex& edited) {
+    std::vector<std::uint32_t> place(edited.points.size());
+    for (std::uint32_t v = 0; v < place.size(); ++v) place[v] = v;
+    for (const auto& [from, to] : plan.merges) place[from] = to;
+    for (auto& [a, b] : edited.segments) {
+        a = place[a];
+        b = place[b];
+    }
+    for (EditableFacet& facet : edited.facets) {
+        for (Chain& polygon : facet.polygons) {
+            for (std::uint32_t& v : polygon) v = place[v];
+        }
+    }
+}
+
+/// A facet without rings is nothing: what it had inside goes too.
+void trim_facet(EditableFacet& facet) {
+    bool has_ring = false;
+    for (Chain& polygon : facet.polygons) {
+        if (polygon.size() < 3) continue;
+        trim_spikes(polygon);
+        if (polygon.size() < 3) polygon.clear();
+        has_ring = has_ring || !polygon.empty();
+    }
+    std::erase_if(facet.polygons, [&](const Chain& polygon) { return polygon.empty() || !has_ring; });
+    if (!has_ring) facet.holes.clear();
+}
+
 }  // namespace
+
+bool trim_spikes(Chain& ring) {
+    const std::size_t size = ring.size();
+    Chain kept;
+    for (const std::uint32_t v : ring) {
+        if (kept.size() >= 2 && kept[kept.size() - 2] == v) {
+            kept.pop_back();
+        } else {
+            kept.push_back(v);
+        }
+    }
+    // The same across the end of the list.
+    std::size_t first = 0, last = kept.size();
+    while (last - first >= 3) {
+        if (kept[first] == kept[last - 2]) {
+            last -= 2;
+        } else if (kept[first + 1] == kept[last - 1]) {
+            first += 2;
+        } else {
+            break;
+        }
+    }
+    ring.assign(kept.begin() + static_cast<std::ptrdiff_t>(first), kept.begin() + static_cast<std::ptrdiff_t>(last));
+    return ring.size() != size;
+}
 
 PiecewiseLinearComplex carry_out(const RepairPlan& plan, const PiecewiseLinearComplex& input, const Complex& complex) {
     EditableComplex edited = take_apart(input);
     edited.points.insert(edited.points.end(), plan.new_points.begin(), plan.new_points.end());
+    if (!plan.merges.empty()) merge_points(plan, edited);
+    for (const std::uint32_t f : plan.trims) trim_facet(edited.facets[f]);
     const auto chains = order_splits(plan, complex, edited.points);
     /// a, the points between a and b; without b.
     const auto walk = [&](std::uint32_t a, std::uint32_t b) {

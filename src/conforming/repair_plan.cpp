@@ -1,7 +1,8 @@
-// From findings to a plan. T-junctions come first: where a point is on a segment or within rounding of it, the segment
-// is split there, so that the exact intersections computed afterwards meet what is already there instead of coming to
-// lie beside it. Then every pair of elements that cross gets its points of intersection, each made once and shared by
-// all that meet there (a point is known by the segment and the facet, or the two segments, that it comes from), and the
+// From findings to a plan. Points within rounding of each other, and rings that walk straight back, are put right
+// before anything else. T-junctions come next: where a point is on a segment or within rounding of it, the segment is
+// split there, so that the exact intersections computed afterwards meet what is already there instead of coming to lie
+// beside it. Then every pair of elements that cross gets its points of intersection, each made once and shared by all
+// that meet there (a point is known by the segment and the facet, or the two segments, that it comes from), and the
 // segments between them.
 //
 // Facets are compared piece by piece; the points where an intersection passes from one piece of a facet to the next are
@@ -40,17 +41,8 @@ public:
 
     /// The nearest point within rounding of `place`, or a new one.
     std::uint32_t make(const Point3& place) {
-        std::set<Cell> around;
-        for (const double x : {place.x - reach_, place.x + reach_}) {
-            for (const double y : {place.y - reach_, place.y + reach_}) {
-                for (const double z : {place.z - reach_, place.z + reach_}) around.insert(cell_of({x, y, z}));
-            }
-        }
         std::pair<double, std::uint32_t> best{reach_, no_index};
-        for (const Cell& cell : around) {
-            const auto [begin, end] = cells_.equal_range(cell);
-            for (auto it = begin; it != end; ++it) best = std::min(best, {distance(at(it->second), place), it->second});
-        }
+        visit_around(place, [&](std::uint32_t v) { best = std::min(best, {distance(at(v), place), v}); });
         if (best.second != no_index) return best.second;
         const auto fresh = static_cast<std::uint32_t>(complex_.points.size() + plan_.new_points.size());
         plan_.new_points.push_back(place);
@@ -58,8 +50,41 @@ public:
         return fresh;
     }
 
+    /// Points within rounding of a lower one that is kept: the lower one, the other.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> find_close_points() const {
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+        std::vector<std::uint8_t> gone(complex_.points.size(), 0);
+        std::set<std::uint32_t> used;
+        for (const auto& [cell, v] : cells_) used.insert(v);
+        for (const std::uint32_t v : used) {
+            if (gone[v]) continue;
+            visit_around(at(v), [&](std::uint32_t w) {
+                const double near = near_of(complex_.points, {&w, 1});
+                if (w <= v || gone[w] || distance(at(v), at(w)) > near) return;
+                gone[w] = 1;
+                pairs.emplace_back(v, w);
+            });
+        }
+        std::sort(pairs.begin(), pairs.end());
+        return pairs;
+    }
+
 private:
     using Cell = std::array<double, 3>;
+
+    template <class Visit>
+    void visit_around(const Point3& place, Visit visit) const {
+        std::set<Cell> around;
+        for (const double x : {place.x - reach_, place.x + reach_}) {
+            for (const double y : {place.y - reach_, place.y + reach_}) {
+                for (const double z : {place.z - reach_, place.z + reach_}) around.insert(cell_of({x, y, z}));
+            }
+        }
+        for (const Cell& cell : around) {
+            const auto [begin, end] = cells_.equal_range(cell);
+            for (auto it = begin; it != end; ++it) visit(it->second);
+        }
+    }
 
     const Point3& at(std::uint32_t v) const {
         const std::size_t count = complex_.points.size();
@@ -81,7 +106,7 @@ private:
 class Planner {
 public:
     Planner(const PiecewiseLinearComplex& input, const Complex& complex, const ConformOptions& options)
-        : complex_(complex), maker_(complex, plan_) {
+        : input_(input), complex_(complex), maker_(complex, plan_) {
         ValidationReport structure = validate_structure(input), report;
         report.max_kept = std::numeric_limits<std::size_t>::max();
         pieces_ = check_facets(input, complex, options, structure, report);
@@ -90,7 +115,9 @@ public:
     }
 
     RepairPlan run() {
-        plan_touching();
+        plan_merges();
+        if (plan_.empty()) plan_trims();
+        if (plan_.empty()) plan_touching();
         if (plan_.empty()) {
             plan_own_crossings();
             plan_crossings();
@@ -133,6 +160,38 @@ private:
     bool has_point(std::uint32_t facet, std::uint32_t v) const {
         const auto facets = complex_.point_facets[v];
         return std::binary_search(facets.begin(), facets.end(), facet);
+    }
+
+    // Points within rounding of each other, rings that walk back
+    // -------------------------------------------------------
+
+    /// Legal as such, but they make most of what is wrong around them.
+    void plan_merges() {
+        for (const auto& [v, w] : maker_.find_close_points()) {
+            plan_.merges.emplace_back(w, v);
+            say(DefectKind::duplicate_point, {{ElementKind::vertex, v}, {ElementKind::vertex, w}}, at(w),
+                vertex_name(w) + " at " + name_place(at(w)) + " is within rounding of " + vertex_name(v) +
+                    " and was merged into it");
+        }
+    }
+
+    void plan_trims() {
+        for (const Defect& defect : facet_defects_) {
+            const std::uint32_t f = defect.elements[0].index;
+            if (defect.kind != DefectKind::open_facet || (!plan_.trims.empty() && plan_.trims.back() == f)) continue;
+            bool changes = false;
+            for (std::uint32_t p = input_.facet_offsets[f]; p < input_.facet_offsets[f + 1]; ++p) {
+                Ids ring;
+                for (std::uint32_t c = input_.polygon_offsets[p]; c < input_.polygon_offsets[p + 1]; ++c) {
+                    ring.push_back(index_of(input_.corners[c]));
+                }
+                changes = (ring.size() > 2 && trim_spikes(ring)) || changes;
+            }
+            if (!changes) continue;
+            plan_.trims.push_back(f);
+            say(DefectKind::open_facet, {{ElementKind::facet, f}}, defect.place,
+                facet_name(f) + " lost spikes, where its ring walks straight back");
+        }
     }
 
     // Points on or near segments and facets ---------------------------------------------------------------------------
@@ -360,6 +419,7 @@ private:
         add(pieces.second, Along::side_of_second);
     }
 
+    const PiecewiseLinearComplex& input_;
     const Complex& complex_;
     RepairPlan plan_;
     PointMaker maker_;

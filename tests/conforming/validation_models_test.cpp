@@ -52,6 +52,9 @@ std::map<DefectKind, long> count_kinds(const std::vector<Defect>& defects) {
 /// without their facets crossing, sides that lie in facets. Its pairs count each of them once per pair of faces.
 const std::set<std::string> counted_otherwise{"cad/angle_block.STL", "cad/featuretype.STL", "cad/octagonal_pocket.ply"};
 
+/// Coplanar facets that overlap, and triangles that coincide up to 1e-33.
+const std::set<std::string> beyond_repair{"defects/not_convex.obj", "cad/octagonal_pocket.ply"};
+
 void check_sound(const Entry& entry, const PiecewiseLinearComplex& complex) {
     const auto report = report_of(complex);
     if (entry.triangles) {
@@ -74,6 +77,11 @@ void check_intersecting(const Entry& entry, const PiecewiseLinearComplex& comple
     const long touching = counts[DefectKind::crossing_segments] + counts[DefectKind::point_on_segment] +
                           counts[DefectKind::repeated_facet] + counts[DefectKind::degenerate_facet];
     EXPECT_GT(crossing + touching, 0) << entry.file;
+    const ConformOptions options{.triangulate = true, .repair = true};
+    const auto after = report_of(repair_complex(complex, options).complex, options);
+    if (!beyond_repair.contains(entry.file)) {
+        EXPECT_TRUE(after.ok()) << entry.file << " repaired: " << after.defects[0].message;
+    }
     if (entry.flawless && entry.triangles && !counted_otherwise.contains(entry.file)) {
         EXPECT_EQ(crossing, entry.pairs) << entry.file;
     }

@@ -83,7 +83,7 @@ TEST(Oracle, AllWaysOfTwoTrianglesToMeet) {
 
 TEST(Oracle, CrowdsAreTheSumOfTheirPairs) {
     core::Random random(2);
-    for (int round = 0; round < 150; ++round) {
+    for (int round = 0; round < 60; ++round) {
         std::vector<IntegerTriangle> crowd;
         std::set<std::set<IntegerPoint>> known;
         while (crowd.size() < 30) {

@@ -109,6 +109,34 @@ TEST(Repair, ListsPointsNearFacets) {
                   {"point_near_facet f1 v5"});
 }
 
+TEST(Repair, MergesPointsWithinRounding) {
+    // Valid as it is: the points differ. But where something is wrong, they go first.
+    const double up = std::nextafter(1.0, 2.0);
+    const std::vector<Point3> points{{0, 0, 0}, {1, 0, 0},      {up, 0, 0},    {0, 1, 0},
+                                     {2, 1, 1}, {0.5, 0.5, -1}, {0.5, 0.25, 1}};
+    const Builder sound = Builder(points).facet({{0, 1, 3}}).facet({{2, 4, 3}});
+    EXPECT_THAT(repaired(sound).repairs, IsEmpty());
+    Builder pierced = sound;
+    pierced.segment(5, 6);
+    const RepairedComplex result = repaired(pierced);
+    EXPECT_THAT(defects_of(result.complex, repairing), IsEmpty());
+    EXPECT_THAT(summaries_of(result.repairs), Contains("duplicate_point v2 v3"));
+}
+
+TEST(Repair, TrimsSpikes) {
+    const std::vector<Point3> points{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 1, 0}, {3, 1, 0}};
+    const auto id = [](std::uint32_t v) { return VertexId{v}; };
+    for (const Ring& ring :
+         {Ring{0, 1, 2, 4, 5, 4, 2, 3}, Ring{5, 4, 2, 3, 0, 1, 2, 4}, Ring{4, 2, 3, 0, 1, 2, 4, 5}}) {
+        const Builder spike = Builder(points).facet({ring});
+        expect_mended(spike, {"open_facet f1"});
+        EXPECT_EQ(repaired(spike).complex.corners.size(), 4u);
+    }
+    const Builder nothing = Builder(points).facet({{0, 1, 2, 1}}).facet({{0, 1, 2, 3}});
+    expect_mended(nothing, {"open_facet f1"});
+    EXPECT_THAT(repaired(nothing).complex.corners, ElementsAre(id(0), id(1), id(2), id(3)));
+}
+
 TEST(Repair, CrossesSegments) {
     const Builder cross = Builder({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}).segment(0, 2).segment(1, 3);
     expect_mended(cross, {"crossing_segments s1 v5", "crossing_segments s2 v5"});
