@@ -105,7 +105,8 @@ std::string write_tetrahedra(const MeshDocument& document, const std::vector<std
     return out.take();
 }
 
-std::string write_cells(std::size_t count, const std::vector<std::int64_t>& markers, auto&& corners_of) {
+template <class CornersOf>
+std::string write_cells(std::size_t count, const std::vector<std::int64_t>& markers, const CornersOf& corners_of) {
     TextOutput out;
     out << count << (markers.empty() ? " 0\n" : " 1\n");
     for (std::size_t i = 0; i < count; ++i) {

@@ -144,7 +144,7 @@ private:
                 if (stored > static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max()))
                     fail("a number is beyond 64-bit integers");
             }
-            value = static_cast<Value>(stored);
+            value = static_cast<Value>(stored);  // NOLINT(bugprone-signed-char-misuse): the number is meant
         }
         return values;
     }

@@ -30,6 +30,8 @@ using Lists = std::vector<std::vector<unsigned>>;
 
 TEST(Off, ReadsPrefixesColoursCommentsAndLineEnds) {
     const Lists triangle{{0, 1, 2}};
+    const char* const all_prefixes =
+        "STCNOFF\n3 1 0\n0 0 0 0 0 1 255 0 0 255 0.5 0.5\n1 0 0 0 0 1 1 1 1 1 0 0\n0 1 0 0 0 1 1 1 1 1 0 0\n3 0 1 2\n";
     for (const char* text : {
              "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n",
              "OFF 3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2",
@@ -39,8 +41,7 @@ TEST(Off, ReadsPrefixesColoursCommentsAndLineEnds) {
              "OFF\r3 1 0\r0 0 0\r1 0 0\r0 1 0\r3 0 1 2\r",
              "COFF\n3 1 0\n0 0 0 255 0 0 255\n1 0 0 0 1 0\n0 1 0 0.5 0.5 0.5 1\n3 0 1 2\n",
              "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0\n0 0 1\n3 0 1 2\n",
-             "STCNOFF\n3 1 0\n0 0 0 0 0 1 255 0 0 255 0.5 0.5\n1 0 0 0 0 1 1 1 1 1 0 0\n0 1 0 0 0 1 1 1 1 1 0 0\n3 0 1 "
-             "2\n",
+             all_prefixes,
              "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2 0.5 0.5 0.5 1\n",
              "OFF\n3 1 0\n0 0\n0\n1 0 0\n0 1 0\n3\n0\n1 2 7\n",
              "OFF\n3 1 0\n+0 0. .0\n1e0 0 0\n0 1.0E+0 0\n3 +0 1 2\n",

@@ -13,6 +13,7 @@ struct Case {
     const char* reason;
 };
 
+// GoogleTest looks for this name. NOLINTNEXTLINE(readability-identifier-naming)
 void PrintTo(const Case& test, std::ostream* out) { *out << name_of(test.format) << ": " << test.name; }
 
 class ReaderRefusal : public testing::TestWithParam<Case> {};
@@ -98,7 +99,7 @@ std::vector<Case> count_cases() {
         {Format::off, "keyword", "OOF\n3 1 0\n", 1, "'OOF'"},
         {Format::off, "four dimensions", "4OFF\n3 1 0\n", 1, "three coordinates"},
         {Format::off, "binary", "OFF BINARY\n\1\2\3", 1, "binary"},
-        {Format::off, "UTF-16", "\xFF\xFEO\0F\0F\0", 1, "UTF-16"},
+        {Format::off, "UTF-16", std::string("\xFF\xFEO\0F\0", 6), 1, "UTF-16"},
         {Format::off, "degree beyond the file", "OFF\n1 1 0\n0 0 0\n900000 0 0\n", 4, "bytes follow"},
         {Format::obj, "empty", "", 1, "empty"},
         {Format::obj, "two coordinates", "v 1 2\nv 1 2 3\n", 1, "fewer than three"},
