@@ -72,6 +72,63 @@ bool to_small_integers(const Arrow* arrows, std::size_t count, int bits, Vec<Int
     return true;
 }
 
+namespace {
+
+/// Coordinates of a few points, decomposed, and the range of their bits.
+struct Range {
+    int lowest = 4096, highest = -4096;
+
+    Decomposed add(double c) {
+        const Decomposed d = decompose(c);
+        if (d.mantissa == 0) return d;
+        lowest = std::min(lowest, d.exponent);
+        const auto size = static_cast<std::uint64_t>(std::abs(d.mantissa));
+        highest = std::max(highest, d.exponent + static_cast<int>(std::bit_width(size)));
+        return d;
+    }
+};
+
+Limbs limbs_of(const Decomposed& d, int lowest) {
+    if (d.mantissa == 0) return {};
+    return {static_cast<std::uint64_t>(std::abs(d.mantissa)), d.exponent - lowest, d.mantissa < 0};
+}
+
+}  // namespace
+
+bool to_limbs(const Arrow* arrows, std::size_t count, int bits, Vec<Limbs>* result, int& exponent) {
+    constexpr std::size_t most = 8;
+    Vec<Decomposed> from[most], to[most];
+    if (count > most) return false;
+    Range range;
+    for (std::size_t i = 0; i < count; ++i) {
+        const Point3 &a = *arrows[i].from, &b = *arrows[i].to;
+        from[i] = {range.add(a.x), range.add(a.y), range.add(a.z)};
+        to[i] = {range.add(b.x), range.add(b.y), range.add(b.z)};
+    }
+    // A difference needs one bit more.
+    if (range.highest - range.lowest + 1 > bits) return false;
+    const int low = range.lowest;
+    for (std::size_t i = 0; i < count; ++i) {
+        result[i] = {limbs_of(to[i].x, low) - limbs_of(from[i].x, low),
+                     limbs_of(to[i].y, low) - limbs_of(from[i].y, low),
+                     limbs_of(to[i].z, low) - limbs_of(from[i].z, low)};
+    }
+    exponent = low == 4096 ? 0 : low;
+    return true;
+}
+
+bool to_limbs_over(const Arrow& arrow, int exponent, int bits, Vec<Limbs>& result) {
+    Range range;
+    const Point3 &a = *arrow.from, &b = *arrow.to;
+    const Vec<Decomposed> from{range.add(a.x), range.add(a.y), range.add(a.z)};
+    const Vec<Decomposed> to{range.add(b.x), range.add(b.y), range.add(b.z)};
+    if (range.lowest < exponent || range.highest - exponent + 1 > bits) return false;
+    result = {limbs_of(to.x, exponent) - limbs_of(from.x, exponent),
+              limbs_of(to.y, exponent) - limbs_of(from.y, exponent),
+              limbs_of(to.z, exponent) - limbs_of(from.z, exponent)};
+    return true;
+}
+
 int to_integers(const Arrow* arrows, std::size_t count, Vec<mpz_class>* result) {
     int lowest = 4096;
     const auto visit = [&](const Point3& p) {

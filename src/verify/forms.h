@@ -2,10 +2,11 @@
 // Polynomials whose sign answers a geometric question, and how their sign is decided without error.
 //
 // A form is written once, as a template over its number type, in terms of vectors that are differences of two points.
-// decide() evaluates it three times at most:
+// decide() tries, in this order:
 //   1. in doubles, next to the same expression over absolute values (Bounded), which gives a bound on the rounding;
 //   2. in 128-bit integers, when all differences are exact doubles that fit a small common grid (grids, boxes, CAD);
-//   3. in GMP integers after scaling all coordinates by one power of two. Always exact, for every finite double.
+//   3. in integers of a fixed size, after scaling all coordinates by one power of two, when they are large enough;
+//   4. in GMP integers of any size. Always exact, for every finite double.
 //
 // The filter's bound. Let u = 2^-53. Barring overflow and underflow, a computed value is the sum of the monomials of
 // the expression, each multiplied by at most k factors (1 + d), |d| <= u, where k counts the roundings that a monomial
@@ -25,6 +26,8 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstdlib>
+
+#include "verify/limbs.h"
 
 namespace certa::verify {
 
@@ -104,6 +107,10 @@ using Int128 = __int128;
 
 /// Writes the arrows' coordinates over one power of two; false when a subtraction rounds or they need more than `bits`.
 bool to_small_integers(const Arrow* arrows, std::size_t count, int bits, Vec<Int128>* result);
+/// Writes the arrows' coordinates over 2^exponent; false when they need more than `bits`.
+bool to_limbs(const Arrow* arrows, std::size_t count, int bits, Vec<Limbs>* result, int& exponent);
+/// Writes one arrow's coordinates over the given power of two; false when they are no integers then, or too large.
+bool to_limbs_over(const Arrow& arrow, int exponent, int bits, Vec<Limbs>& result);
 /// Writes the arrows' coordinates, exactly, over one power of two; returns its exponent.
 int to_integers(const Arrow* arrows, std::size_t count, Vec<mpz_class>* result);
 
@@ -116,25 +123,27 @@ constexpr Census census_of() {
     return Form::template value<Census>(v);
 }
 
-/// Bits that a coordinate may have so that nothing overflows 127 bits.
+/// Bits that a coordinate may have so that no value of the form needs more than `total`.
 template <class Form>
-constexpr int small_bits() {
-    double monomials = census_of<Form>().monomials;
-    int bits = 126;
-    while (monomials > 1.0) {
-        monomials /= 2.0;
-        --bits;
-    }
-    return bits / Form::degree;
+constexpr int coordinate_bits(int total) {
+    for (double monomials = census_of<Form>().monomials; monomials > 1.0; monomials /= 2.0) --total;
+    return total / Form::degree;
 }
 
 template <class Form>
 int decide_exactly(const std::array<Arrow, Form::arity>& arrows) {
     {
         std::array<Vec<Int128>, Form::arity> v;
-        if (to_small_integers(arrows.data(), arrows.size(), small_bits<Form>(), v.data())) {
+        if (to_small_integers(arrows.data(), arrows.size(), coordinate_bits<Form>(126), v.data())) {
             const Int128 value = Form::template value<Int128>(v);
             return value > 0 ? 1 : value < 0 ? -1 : 0;
+        }
+    }
+    {
+        std::array<Vec<Limbs>, Form::arity> v;
+        int exponent = 0;
+        if (to_limbs(arrows.data(), arrows.size(), coordinate_bits<Form>(Limbs::bits), v.data(), exponent)) {
+            return Form::template value<Limbs>(v).sign();
         }
     }
     std::array<Vec<mpz_class>, Form::arity> v;

@@ -40,6 +40,9 @@ constexpr Vec<Census> leaves{{1, 1.0}, {1, 1.0}, {1, 1.0}};
 constexpr int circumball_roundings = inside_roundings(circumball_of(leaves, leaves, leaves));
 constexpr int diametral_ball_roundings = inside_roundings(diametral_ball_of(leaves, leaves));
 constexpr int beyond_roundings = inside_roundings({{0, 0.0}, cross_of(leaves, leaves)});
+/// Coefficients that were computed exactly and rounded: to extended precision and from there to double.
+constexpr Census rounded{2, 1.0};
+constexpr int refined_roundings = inside_roundings({rounded, {rounded, rounded, rounded}});
 
 /// The least of a w^2 - b w for w in [low, high], and the largest |w|. Rounding is of second order at the minimum of
 /// the parabola and otherwise covered by the caller's bound.
@@ -71,6 +74,11 @@ QuadricRegion::QuadricRegion(Kind kind, const Point3& a, const Point3& b, const 
     }
     a_ = ball.a;
     b_ = ball.b;
+    // 2^20 leaves 30 good bits.
+    constexpr double poor = 0x1p20;
+    const double size = std::max({b_.x.size, b_.y.size, b_.z.size});
+    const double value = std::max({std::abs(b_.x.value), std::abs(b_.y.value), std::abs(b_.z.value)});
+    if (filtered_ && (a_.size > poor * std::abs(a_.value) || size > poor * value)) refine();
 }
 
 QuadricRegion QuadricRegion::circumball(const Point3& a, const Point3& b, const Point3& c, const Point3& d) {
@@ -83,17 +91,65 @@ QuadricRegion QuadricRegion::beyond(const Point3& a, const Point3& b, const Poin
     return {Kind::beyond, a, b, c, nullptr};
 }
 
-int QuadricRegion::decide(const Point3& p) const {
-    const Arrow u{&corners_[0], &corners_[1]}, v{&corners_[0], &corners_[2]}, w{&corners_[0], &p};
+bool QuadricRegion::compute_exactly() const {
+    if (state_ != Exact::unknown) return state_ == Exact::known;
+    const Arrow arrows[3] = {{&corners_[0], &corners_[1]}, {&corners_[0], &corners_[2]}, {&corners_[0], &corners_[3]}};
+    Vec<Limbs> v[3];
+    // The largest of the forms that the coefficients end up in.
+    constexpr int bits = coordinate_bits<DiametralBallForm>(Limbs::bits);
+    static_assert(bits <= coordinate_bits<CircumballForm>(Limbs::bits));
+    if (!to_limbs(arrows, 3, bits, v, exponent_)) {
+        state_ = Exact::too_large;
+        return false;
+    }
     switch (kind_) {
         case Kind::circumball:
-            return decide_exactly<CircumballForm>({u, v, Arrow{&corners_[0], &corners_[3]}, w});
+            exact_ = circumball_of(v[0], v[1], v[2]);
+            break;
         case Kind::diametral_ball:
-            return decide_exactly<DiametralBallForm>({u, v, w});
+            exact_ = diametral_ball_of(v[0], v[1]);
+            break;
         case Kind::beyond:
+            exact_ = {Limbs(), cross_of(v[0], v[1])};
             break;
     }
-    return decide_exactly<DeterminantForm>({u, v, w});
+    state_ = Exact::known;
+    return true;
+}
+
+void QuadricRegion::refine() {
+    if (!compute_exactly()) return;
+    const int degree = kind_ == Kind::circumball ? 3 : kind_ == Kind::diametral_ball ? 4 : 1;  // of a; b has one more
+    int exponents[4];
+    long double values[4] = {exact_.a.leading(exponents[0]), exact_.b.x.leading(exponents[1]),
+                             exact_.b.y.leading(exponents[2]), exact_.b.z.leading(exponents[3])};
+    // A common power of two brings the largest near 1: the sign of the form stays what it is.
+    int largest = -1000000;
+    for (int i = 0; i < 4; ++i) {
+        exponents[i] += (i == 0 ? degree : degree + 1) * exponent_;
+        if (values[i] != 0.0L) largest = std::max(largest, exponents[i] + std::ilogb(values[i]));
+    }
+    const auto coefficient = [&](int i) {
+        const auto value = static_cast<double>(std::ldexp(values[i], std::max(exponents[i] - largest, -4000)));
+        return Bounded{value, std::abs(value)};
+    };
+    a_ = coefficient(0);
+    b_ = {coefficient(1), coefficient(2), coefficient(3)};
+    roundings_ = refined_roundings;
+}
+
+int QuadricRegion::decide(const Point3& p) const {
+    const Arrow u{&corners_[0], &corners_[1]}, v{&corners_[0], &corners_[2]}, w{&corners_[0], &p};
+    if (kind_ == Kind::beyond) return decide_exactly<DeterminantForm>({u, v, w});
+    // With the coefficients at hand, when the point fits on their grid.
+    if (compute_exactly()) {
+        Vec<Limbs> q;
+        if (to_limbs_over(w, exponent_, coordinate_bits<DiametralBallForm>(Limbs::bits), q)) {
+            return inside_value(exact_, q).sign();
+        }
+    }
+    if (kind_ == Kind::circumball) return decide_exactly<CircumballForm>({u, v, Arrow{&corners_[0], &corners_[3]}, w});
+    return decide_exactly<DiametralBallForm>({u, v, w});
 }
 
 int QuadricRegion::side(const Point3& p) const {

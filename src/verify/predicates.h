@@ -22,9 +22,10 @@ int middle_side(const Point3& o, const Point3& p, const Point3& q, const Point3&
 /// Sign of the z coordinate of (b - a) x (p - a).
 int orientation_xy(const Point3& a, const Point3& b, const Point3& p);
 
-/// A region { w : a |w|^2 - b . w < 0 }, w = p - origin, in doubles with error bounds: the circumball of a tetrahedron,
-/// the diametral ball of a triangle, or (a = 0) the open half-space beyond the plane of a triangle. Made for asking
-/// about many points; `decide` says exactly where the filter cannot.
+/// A region { w : a |w|^2 - b . w < 0 }, w = p - origin: the circumball of a tetrahedron, the diametral ball of a
+/// triangle, or (a = 0) the open half-space beyond the plane of a triangle. Made for asking about many points and
+/// boxes: a and b are kept in doubles with error bounds, and exactly once they are needed so. Where doubles say little
+/// about them (slivers), they are computed exactly and rounded. Not to be used from two threads at once.
 class QuadricRegion {
 public:
     static QuadricRegion circumball(const Point3& a, const Point3& b, const Point3& c, const Point3& d);
@@ -41,6 +42,8 @@ private:
     enum class Kind : unsigned char { circumball, diametral_ball, beyond };
     QuadricRegion(Kind kind, const Point3& a, const Point3& b, const Point3& c, const Point3* d);
     int decide(const Point3& p) const;
+    bool compute_exactly() const;
+    void refine();
 
     Kind kind_;
     bool filtered_ = true;
@@ -48,6 +51,10 @@ private:
     Point3 corners_[4];
     Bounded a_;
     Vec<Bounded> b_;
+    enum class Exact : unsigned char { unknown, known, too_large };
+    mutable Exact state_ = Exact::unknown;
+    mutable int exponent_ = 0;  // of the coordinates that exact_ is made from
+    mutable BallCoefficients<Limbs> exact_;
 };
 
 /// Newell's normal of a closed polygon, twice its vector area: sum of (v_i - v_0) x (v_{i+1} - v_0). Exact on demand.
