@@ -63,7 +63,7 @@ MeshDocument make_document(const TetMesh& mesh, const PiecewiseLinearComplex& co
 ///
 /// Input:  polygons must be triangles. Labels come from the named fields, else from the one number per element
 ///         ("references": markers); what is not positive is no label (no_index; region 0).
-/// Errors: IoError that names the first polygon that is no triangle.
+/// Errors: IoError that names the first polygon that is no triangle, or a label beyond 32 bits.
 TetMesh make_tet_mesh(const MeshDocument& document);
 
 }  // namespace certa

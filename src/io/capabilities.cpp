@@ -7,6 +7,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <set>
 
 #include "io/document_parts.h"
 #include "io/msh.h"
@@ -210,12 +211,13 @@ bool fits(const MeshDocument& document, const Field& field, Format format) {
     return false;
 }
 
+std::string words_for(const Field& field) { return "the field '" + field.name + "' of " + name_of(field.location); }
+
 std::vector<std::string> problems_of(const MeshDocument& document, const Shape& shape, Format format) {
     std::vector<std::string> problems;
     add_structure_problems(document, shape, format, problems);
     for (const Field& field : document.fields)
-        if (!fits(document, field, format))
-            problems.push_back("the field '" + field.name + "' of " + name_of(field.location));
+        if (!fits(document, field, format)) problems.push_back(words_for(field));
     const bool is_complex = format == Format::poly || format == Format::smesh;
     // TetGen takes an empty list of points for "in the .node file".
     if (is_complex && document.complex.positions.empty()) problems.emplace_back("a complex without points");
@@ -300,17 +302,13 @@ void check_places(const PiecewiseLinearComplex& complex, const std::string& name
     }
 }
 
-void check_field(const MeshDocument& document, std::size_t i, const std::string& name) {
-    const Field& field = document.fields[i];
-    const std::string what = "the field '" + field.name + "' of " + name_of(field.location);
+void check_field(const MeshDocument& document, const Field& field, const std::string& name) {
+    const std::string what = words_for(field);
     const std::size_t wanted = size_at(document, field.location) * field.components;
     const std::size_t given = std::visit([](const auto& values) { return values.size(); }, field.values);
     if (field.components == 0) refuse(name, what + " has no components");
     if (given != wanted)
         refuse(name, what + " has " + std::to_string(given) + " numbers instead of " + std::to_string(wanted));
-    for (std::size_t k = 0; k < i; ++k)
-        if (document.fields[k].location == field.location && document.fields[k].name == field.name)
-            refuse(name, what + " is there twice");
     const std::vector<std::int32_t>* markers = find_markers(document.complex, field.location);
     if (field.name == "marker" && markers != nullptr && !markers->empty())
         refuse(name, what + " stands beside the markers of the complex");
@@ -326,7 +324,11 @@ void check_consistent(const MeshDocument& document, const std::string& name) {
     check_sizes(document, name);
     check_references(document, name);
     check_places(document.complex, name);
-    for (std::size_t i = 0; i < document.fields.size(); ++i) check_field(document, i, name);
+    std::set<std::pair<Location, std::string_view>> names;
+    for (const Field& field : document.fields) {
+        check_field(document, field, name);
+        if (!names.insert({field.location, field.name}).second) refuse(name, words_for(field) + " is there twice");
+    }
 }
 
 void check_writable(const MeshDocument& document, Format format, const WriteOptions& options, const std::string& name) {

@@ -47,8 +47,20 @@ std::vector<std::int32_t> as_markers(const NumberArray& values) {
     return meaningful({integers.begin(), integers.end()});
 }
 
-std::vector<std::int32_t>* markers_at(PiecewiseLinearComplex& complex, Location location) {
-    return const_cast<std::vector<std::int32_t>*>(find_markers(complex, location));
+/// The marker array of a location, const or not like the complex.
+template <class Complex>
+auto* select_markers(Complex& complex, Location location) {
+    switch (location) {
+        case Location::vertices:
+            return &complex.point_markers;
+        case Location::polygons:
+            return &complex.facet_markers;
+        case Location::segments:
+            return &complex.segment_markers;
+        case Location::tetrahedra:
+            break;
+    }
+    return decltype(&complex.point_markers){nullptr};
 }
 
 /// Appends what a kind of cell has under a name, as numbers of type T; zeros if it has nothing.
@@ -80,7 +92,7 @@ void add_cell_array(MeshDocument& document, const std::string& name, std::uint32
     for (std::size_t k = 0; k < parts.size(); ++k) {
         if (size_of(parts[k]) == 0) continue;
         if (is_zero(parts[k]) && (markers || (is_label ? name != labels[k] : !all_zero))) continue;
-        std::vector<std::int32_t>* target = markers ? markers_at(document.complex, cell_locations[k]) : nullptr;
+        std::vector<std::int32_t>* target = markers ? select_markers(document.complex, cell_locations[k]) : nullptr;
         if (target != nullptr)
             *target = as_markers(parts[k]);
         else
@@ -197,17 +209,7 @@ void add_field(MeshDocument& document, std::string name, Location location, std:
 }
 
 const std::vector<std::int32_t>* find_markers(const PiecewiseLinearComplex& complex, Location location) {
-    switch (location) {
-        case Location::vertices:
-            return &complex.point_markers;
-        case Location::polygons:
-            return &complex.facet_markers;
-        case Location::segments:
-            return &complex.segment_markers;
-        case Location::tetrahedra:
-            break;
-    }
-    return nullptr;
+    return select_markers(complex, location);
 }
 
 ElementNumbers choose_element_numbers(const MeshDocument& document) {

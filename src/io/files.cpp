@@ -94,7 +94,8 @@ struct OptionalFile {
 
 MeshDocument read_node_files(const std::string& path) {
     const std::string stem = stem_of(path);
-    const std::string node_path = exists(stem + ".node") ? stem + ".node" : path;
+    const bool is_other = stem != path && !path.ends_with(".node");
+    const std::string node_path = is_other || exists(stem + ".node") ? stem + ".node" : path;
     const std::string node = read_whole(node_path);
     const OptionalFile ele(stem + ".ele"), face(stem + ".face"), edge(stem + ".edge");
     return io::read_node_set({{node_path, node}, ele.text(), face.text(), edge.text()});

@@ -1,8 +1,8 @@
 // The header of a PLY file, line by line: format, comment, obj_info, element, property, end_header.
 #include "io/ply_header.h"
 
-#include <algorithm>
 #include <array>
+#include <set>
 
 namespace certa::io {
 namespace {
@@ -57,21 +57,17 @@ void read_format(TextCursor& cursor, PlyHeader& header) {
         cursor.fail("version " + quoted(version) + " is not known, only 1.0");
 }
 
-void add_property(TextCursor& cursor, PlyHeader& header) {
+void add_property(TextCursor& cursor, PlyHeader& header, std::set<std::string>& names) {
     if (header.elements.empty()) cursor.fail("a property before the first element");
     PlyProperty property = read_property(cursor);
-    auto& properties = header.elements.back().properties;
-    if (std::any_of(properties.begin(), properties.end(),
-                    [&](const PlyProperty& p) { return p.name == property.name; }))
-        cursor.fail("the property " + quoted(property.name) + " is there twice");
-    properties.push_back(std::move(property));
+    if (!names.insert(property.name).second) cursor.fail("the property " + quoted(property.name) + " is there twice");
+    header.elements.back().properties.push_back(std::move(property));
 }
 
-void add_element(TextCursor& cursor, PlyHeader& header) {
+void add_element(TextCursor& cursor, PlyHeader& header, std::set<std::string>& names) {
     PlyElement element;
     element.name = word_of_line(cursor, "the name of an element");
-    for (const PlyElement& other : header.elements)
-        if (other.name == element.name) cursor.fail("the element " + quoted(element.name) + " is there twice");
+    if (!names.insert(element.name).second) cursor.fail("the element " + quoted(element.name) + " is there twice");
     element.count = cursor.count("the number of elements", 0);
     header.elements.push_back(std::move(element));
 }
@@ -109,6 +105,7 @@ PlyHeader read_ply_header(TextCursor& cursor) {
     if (cursor.word("ply") != "ply") cursor.fail("a PLY file starts with the word ply");
     cursor.end_line("ply");
     bool has_format = false;
+    std::set<std::string> element_names, property_names;
     for (;;) {
         const std::string_view keyword = cursor.word("end_header");
         if (keyword == "comment" || keyword == "obj_info") {
@@ -119,9 +116,10 @@ PlyHeader read_ply_header(TextCursor& cursor) {
             read_format(cursor, header);
             has_format = true;
         } else if (keyword == "element") {
-            add_element(cursor, header);
+            add_element(cursor, header, element_names);
+            property_names.clear();
         } else if (keyword == "property") {
-            add_property(cursor, header);
+            add_property(cursor, header, property_names);
         } else if (keyword == "end_header") {
             break;
         } else {

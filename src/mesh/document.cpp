@@ -77,7 +77,9 @@ std::vector<Id> ids_from_one(const std::vector<Number>& labels) {
     ids.reserve(labels.size());
     for (const Number label : labels) {
         const auto wide = static_cast<std::int64_t>(label);
-        ids.push_back(Id{wide <= 0 || wide > std::int64_t{no_index} ? no_index : static_cast<std::uint32_t>(wide - 1)});
+        if (wide > std::int64_t{no_index})
+            throw IoError("document", 0, "the label " + std::to_string(wide) + " is no 32-bit id");
+        ids.push_back(Id{wide <= 0 ? no_index : static_cast<std::uint32_t>(wide - 1)});
     }
     return ids;
 }
@@ -104,9 +106,11 @@ std::vector<RegionId> regions_of(const MeshDocument& document) {
     std::vector<RegionId> ids;
     if (regions == nullptr) return ids;
     ids.reserve(regions->size());
-    for (const std::int64_t region : *regions)
-        ids.push_back(
-            RegionId{region < 0 || region >= std::int64_t{no_index} ? 0U : static_cast<std::uint32_t>(region)});
+    for (const std::int64_t region : *regions) {
+        if (region >= std::int64_t{no_index})
+            throw IoError("document", 0, "the region " + std::to_string(region) + " is no 32-bit id");
+        ids.push_back(RegionId{region < 0 ? 0U : static_cast<std::uint32_t>(region)});
+    }
     return ids;
 }
 

@@ -135,6 +135,8 @@ TEST_F(Files, NodeSetsAreReadAndWrittenTogether) {
     EXPECT_EQ(get("a.ele"), "0 4 0\n");
 
     EXPECT_THROW(format_document(document, Format::node), IoError);
+    put("lone.ele", "0 4 0\n");
+    EXPECT_NE(reason_to_read("lone.ele").find("lone.node: cannot open"), std::string::npos);
     put("a.face", "1 0\n1 1 2 4\n");
     EXPECT_NE(reason_to_read("a.node").find("a.face:2:"), std::string::npos);
     put("a.face", "1 0\n1 1 2 3 4\n");
