@@ -7,6 +7,7 @@
 #include <numeric>
 #include <unordered_map>
 
+#include "verify/distance.h"
 #include "verify/plc.h"
 
 namespace certa::verify {
@@ -15,7 +16,7 @@ namespace {
 class Arrangement {
 public:
     Arrangement(const PiecewiseLinearComplex& complex, std::uint32_t facet, const NewellNormal& normal)
-        : complex_(complex), facet_(facet), normal_(normal) {}
+        : complex_(complex), facet_(facet), normal_(normal), plane_(facet_corners(complex, facet), normal) {}
 
     std::vector<RingEdge> run() {
         collect_edges();
@@ -36,6 +37,7 @@ private:
         std::vector<std::size_t> halves;
         std::vector<Point3> points;
         bool encloses = false;  // turns counter-clockwise
+        Point3 low, high;
     };
 
     // Half-edge 2 e runs along edge e from its lower to its higher corner, 2 e + 1 back.
@@ -104,6 +106,12 @@ private:
                 cycle.points.push_back(at(tail(h)));
             }
             cycle.encloses = normal_.turn(cycle.points) > 0;
+            cycle.low = cycle.high = cycle.points[0];
+            for (const Point3& p : cycle.points) {
+                cycle.low = {std::min(cycle.low.x, p.x), std::min(cycle.low.y, p.y), std::min(cycle.low.z, p.z)};
+                cycle.high = {std::max(cycle.high.x, p.x), std::max(cycle.high.y, p.y), std::max(cycle.high.z, p.z)};
+                thickness_ = std::max(thickness_, plane_.distance(p));
+            }
             cycles_.push_back(std::move(cycle));
         }
     }
@@ -117,9 +125,18 @@ private:
         }
         return best;
     }
+    /// Where p is under a point q of the polygon in projection, and both are within thickness_ of the plane, |p - q| is
+    /// at most 2 thickness_.
+    bool is_outside(const Cycle& cycle, const Point3& p) const {
+        const double slack = 2.001 * std::max(thickness_, plane_.distance(p));
+        return p.x < cycle.low.x - slack || p.y < cycle.low.y - slack || p.z < cycle.low.z - slack ||
+               p.x > cycle.high.x + slack || p.y > cycle.high.y + slack || p.z > cycle.high.z + slack;
+    }
+
     /// Winding number of the cycle around p, from its crossings with the ray from p in the direction of edge 0. A
     /// corner on the ray's line counts as left of it, as if p were moved a little to the right.
     bool contains(const Cycle& cycle, const Point3& p) const {
+        if (is_outside(cycle, p)) return false;
         const Arrow ray{&at(edges_[0][0]), &at(edges_[0][1])};
         int winding = 0;
         for (const std::size_t h : cycle.halves) {
@@ -162,6 +179,8 @@ private:
     const PiecewiseLinearComplex& complex_;
     std::uint32_t facet_;
     const NewellNormal& normal_;
+    const FacetPlane plane_;
+    double thickness_ = 0.0;  // largest distance of a ring's corner from the plane
     std::vector<std::array<std::uint32_t, 2>> edges_;
     std::vector<std::size_t> next_;
     std::vector<std::uint32_t> cycle_;  // per half-edge

@@ -215,13 +215,7 @@ private:
     }
 
     double check_distances(const NewellNormal& normal) {
-        const PiecewiseLinearComplex& c = subject_.complex;
-        std::vector<Point3> corners;
-        for (std::uint32_t i = c.polygon_offsets[c.facet_offsets[facet_]];
-             i < c.polygon_offsets[c.facet_offsets[facet_ + 1]]; ++i) {
-            corners.push_back(c.positions[index_of(c.corners[i])]);
-        }
-        const FacetPlane plane(corners, normal);
+        const FacetPlane plane(facet_corners(subject_.complex, facet_), normal);
         double largest = 0.0;
         for (const std::uint32_t v : vertices_) {
             const double distance = plane.distance(subject_.at(v));

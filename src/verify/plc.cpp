@@ -138,6 +138,7 @@ public:
         for (std::uint32_t f = 0; f < complex_.facet_count(); ++f) {
             row_.clear();
             read_polygons(f);
+            if (row_.size() > searched) unite_row();
             if (!is_plain(complex_, f)) cover_rings(f);
             result.sides.insert(result.sides.end(), row_.begin(), row_.end());
             result.offsets.push_back(result.sides.size());
@@ -146,6 +147,8 @@ public:
     }
 
 private:
+    static constexpr std::size_t searched = 16;
+
     std::uint32_t number(std::uint32_t a, std::uint32_t b) {
         const std::uint32_t known = plc_.segment_of_ends.find(a, b);
         if (known != no_index) return known;
@@ -170,8 +173,8 @@ private:
         }
     }
     void add(const PlcSide& side) {
-        // Rows are short but for a few facets, and those sort better than they search.
-        if (row_.size() < 16) {
+        // Rows are short but for a few facets, and those are sorted instead.
+        if (row_.size() <= searched) {
             for (PlcSide& known : row_) {
                 if (known.segment != side.segment) continue;
                 if (side.ring && !known.ring) known = side;
@@ -355,6 +358,12 @@ std::vector<Point3> ring_points(const PiecewiseLinearComplex& complex, std::uint
     for (std::uint32_t i = complex.polygon_offsets[polygon]; i < complex.polygon_offsets[polygon + 1]; ++i) {
         points.push_back(complex.positions[index_of(complex.corners[i])]);
     }
+    return points;
+}
+
+std::vector<Point3> facet_corners(const PiecewiseLinearComplex& complex, std::uint32_t facet) {
+    std::vector<Point3> points;
+    for_each_corner(complex, facet, [&](std::uint32_t v) { points.push_back(complex.positions[v]); });
     return points;
 }
 

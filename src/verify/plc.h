@@ -43,6 +43,8 @@ struct Plc {
 
 /// Corners of polygon p as points.
 std::vector<Point3> ring_points(const PiecewiseLinearComplex& complex, std::uint32_t polygon);
+/// Corners of all polygons of a facet as points.
+std::vector<Point3> facet_corners(const PiecewiseLinearComplex& complex, std::uint32_t facet);
 /// The first ring of a facet, or no_index.
 std::uint32_t first_ring(const PiecewiseLinearComplex& complex, std::uint32_t facet);
 /// Newell's normal of a facet's first ring.
