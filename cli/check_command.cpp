@@ -51,7 +51,7 @@ void say_violations(Session& session, const ConformingCheck& check) {
         session.flags().verbose ? check.violations.size() : std::min<std::size_t>(20, check.violations.size());
     for (std::size_t i = 0; i < shown; ++i) {
         const Violation& violation = check.violations[i];
-        session.say(violation.promise + ": " + violation.message + text_of_place(violation.place));
+        session.say(violation.promise + ": " + violation.message);
     }
     if (check.violation_count > shown) session.say("... " + counted(check.violation_count - shown, "more violation"));
 }

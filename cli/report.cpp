@@ -133,11 +133,6 @@ const char* label_of(const char* key) {
     return "warning";
 }
 
-std::string text_of_place(const Point3& place) {
-    using frontend::text_of;
-    return " (at " + text_of(place.x) + " " + text_of(place.y) + " " + text_of(place.z) + ")";
-}
-
 std::string text_of_seconds(double seconds) {
     std::array<char, 32> buffer;
     const auto end =

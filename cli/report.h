@@ -24,8 +24,6 @@ Json to_json(const DocumentInfo& info);
 
 /// "repair" for "repairs".
 const char* label_of(const char* key);
-/// " (at 0.5 1 2)"
-std::string text_of_place(const Point3& place);
 /// "0.31 s"
 std::string text_of_seconds(double seconds);
 /// Digits in groups of three: "12,946".

@@ -98,8 +98,7 @@ void Session::note_defects(const char* key, const std::vector<Defect>& defects) 
     constexpr std::size_t shown = 5;
     for (std::size_t i = 0; i < defects.size(); ++i) {
         report_[key].push_back(to_json(defects[i]));
-        const std::string line =
-            std::string(label_of(key)) + ": " + defects[i].message + text_of_place(defects[i].place);
+        const std::string line = std::string(label_of(key)) + ": " + defects[i].message;
         if (i < shown)
             say(line);
         else
