@@ -8,6 +8,7 @@
 
 #include "core/random.h"
 #include "verify/grid_mesh.h"
+#include "verify/predicates.h"
 
 namespace certa::test {
 namespace {
@@ -176,17 +177,33 @@ TEST(CheckValid, coincident_input_points_that_repair_left_over) {
     }
 }
 TEST(CheckBroken, hull_filled_twice) {
-    // Kuhn's six tetrahedra and the five of the other cut, on the same corners: all empty circumballs, all positive.
+    // A cube filled by Kuhn's six tetrahedra and again by two corners and an octahedron in four: no face in common (all
+    // diagonals of its sides differ), all on one sphere, all positive, each filling valid on its own.
     Case c = cube(false);
-    const Case other = cube_of_five();
-    std::vector<std::uint32_t> same;
-    for (const Point3& p : other.mesh.positions) same.push_back(find_vertex(c, p));
-    for (const Tetrahedron& t : other.mesh.tetrahedra) {
-        c.mesh.tetrahedra.push_back({VertexId{same[index_of(t[0])]}, VertexId{same[index_of(t[1])]},
-                                     VertexId{same[index_of(t[2])]}, VertexId{same[index_of(t[3])]}});
-        c.mesh.tetrahedron_regions.push_back(RegionId{1});
+    c.complex = {};
+    c.complex.positions = c.mesh.positions;
+    c.mesh.triangles.clear();
+    c.mesh.triangle_facets.clear();
+    c.mesh.edges.clear();
+    c.mesh.edge_segments.clear();
+    c.mesh.tetrahedron_regions.assign(6, RegionId{0});
+    expect_fine(c);
+    const std::vector<Tetrahedron> first = c.mesh.tetrahedra;
+    const auto v = [&](int x, int y, int z) { return VertexId{find_vertex(c, {x * 1.0, y * 1.0, z * 1.0})}; };
+    const VertexId a = v(1, 0, 0), b = v(0, 1, 1);
+    const std::array<VertexId, 4> ring{v(0, 1, 0), v(0, 0, 1), v(1, 0, 1), v(1, 1, 0)};
+    std::vector<Tetrahedron> second{{v(0, 0, 0), a, ring[0], ring[1]}, {v(1, 1, 1), b, ring[2], ring[3]}};
+    for (std::size_t i = 0; i < 4; ++i) second.push_back({a, b, ring[i], ring[(i + 1) % 4]});
+    for (Tetrahedron& t : second) {
+        const auto at = [&](std::size_t i) { return c.mesh.positions[index_of(t[i])]; };
+        if (verify::orientation(at(0), at(1), at(2), at(3)) < 0) std::swap(t[2], t[3]);
     }
+    c.mesh.tetrahedra = second;
+    expect_fine(c);
+    c.mesh.tetrahedra.insert(c.mesh.tetrahedra.end(), first.begin(), first.end());
+    c.mesh.tetrahedron_regions.assign(12, RegionId{0});
     expect_broken(c, "well-formed");
+    EXPECT_FALSE(check_conforming(c.mesh, c.complex).full_hull);
 }
 TEST(CheckBroken, overlap_on_one_sphere_without_hull) {
     // The same two fillings of a cube, this time with all their surfaces as facets and next to another cube, so that
