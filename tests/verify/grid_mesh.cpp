@@ -98,10 +98,11 @@ std::vector<Place> GridMesh::line(const Place& a, const Place& b) const {
     return result;
 }
 
-Case GridMesh::make() {
-    // Segments by number.
+/// Segments by number, with their ends' places.
+void GridMesh::number_segments() {
+    std::set<std::array<Place, 2>> known;
     const auto add = [&](const Place& a, const Place& b) {
-        if (known_.insert(ordered(a, b)).second) chains_.push_back({a, b});
+        if (known.insert(ordered(a, b)).second) chains_.push_back({a, b});
     };
     for (const Edge& e : complex_.segments) add(places_[index_of(e[0])], places_[index_of(e[1])]);
     for (std::size_t p = 0; p < complex_.polygon_count(); ++p) {
@@ -111,27 +112,27 @@ Case GridMesh::make() {
                 places_[index_of(complex_.corners[begin + (i + 1) % count])]);
         }
     }
-    // Which lattice points are in a kept cube, and what carries them.
+}
+
+/// The corners of a unit square in the plane normal to its axis, counter-clockwise about the axis.
+std::array<Place, 4> GridMesh::corners(const Square& s) {
+    const auto u = static_cast<std::size_t>((s.axis + 1) % 3), v = static_cast<std::size_t>((s.axis + 2) % 3);
+    std::array<Place, 4> result{s.corner, s.corner, s.corner, s.corner};
+    ++result[1][u];
+    ++result[2][u];
+    ++result[2][v];
+    ++result[3][v];
+    return result;
+}
+
+void GridMesh::place_vertices(TetMesh& mesh, const std::vector<Place>& cubes) {
     std::set<Place> used;
-    std::vector<Place> cubes;
-    for (int x = 0; x < size_[0]; ++x) {
-        for (int y = 0; y < size_[1]; ++y) {
-            for (int z = 0; z < size_[2]; ++z) {
-                if (region_of({x, y, z}) < 0) continue;
-                cubes.push_back({x, y, z});
-                for (int c = 0; c < 8; ++c) used.insert({x + (c & 1), y + ((c >> 1) & 1), z + (c >> 2)});
-            }
-        }
+    for (const auto& [x, y, z] : cubes) {
+        for (int c = 0; c < 8; ++c) used.insert({x + (c & 1), y + ((c >> 1) & 1), z + (c >> 2)});
     }
     std::map<Place, VertexSource> carried;
     for (const Square& s : squares_) {
-        const auto u = static_cast<std::size_t>((s.axis + 1) % 3), v = static_cast<std::size_t>((s.axis + 2) % 3);
-        for (int c = 0; c < 4; ++c) {
-            Place p = s.corner;
-            p[u] += c & 1;
-            p[v] += c >> 1;
-            carried.try_emplace(p, VertexSource{VertexOrigin::facet, s.facet});
-        }
+        for (const Place& p : corners(s)) carried.try_emplace(p, VertexSource{VertexOrigin::facet, s.facet});
     }
     for (std::uint32_t s = 0; s < chains_.size(); ++s) {
         for (const Place& p : line(chains_[s][0], chains_[s][1])) carried[p] = {VertexOrigin::segment, s};
@@ -139,51 +140,61 @@ Case GridMesh::make() {
     for (const Place& p : used) {
         if (!carried.contains(p)) point(p);
     }
-    Case result;
-    TetMesh& mesh = result.mesh;
-    std::map<Place, VertexId> ids;
-    const auto add_vertex = [&](const Place& p, const VertexSource& source) {
-        ids[p] = VertexId{static_cast<std::uint32_t>(mesh.positions.size())};
+    const auto add = [&](const Place& p, const VertexSource& source) {
+        ids_[p] = VertexId{static_cast<std::uint32_t>(mesh.positions.size())};
         mesh.positions.push_back(position(p));
         mesh.vertex_sources.push_back(source);
     };
-    for (std::uint32_t i = 0; i < places_.size(); ++i) add_vertex(places_[i], {VertexOrigin::input, i});
+    ids_.clear();
+    for (std::uint32_t i = 0; i < places_.size(); ++i) add(places_[i], {VertexOrigin::input, i});
     for (const Place& p : used) {
-        if (!ids.contains(p)) add_vertex(p, carried.at(p));
+        if (!ids_.contains(p)) add(p, carried.at(p));
     }
-    for (const Place& cube : cubes) {
-        std::array<std::size_t, 3> axes{0, 1, 2};
-        do {
-            Place p = cube;
-            Tetrahedron t{ids.at(p)};
-            for (std::size_t k = 0; k < 3; ++k) {
-                ++p[axes[k]];
-                t[k + 1] = ids.at(p);
+}
+
+void GridMesh::fill(TetMesh& mesh, const Place& cube) const {
+    std::array<std::size_t, 3> axes{0, 1, 2};
+    do {
+        Place p = cube;
+        Tetrahedron t{ids_.at(p)};
+        for (std::size_t k = 0; k < 3; ++k) {
+            ++p[axes[k]];
+            t[k + 1] = ids_.at(p);
+        }
+        const bool even = (axes[0] + 1) % 3 == axes[1];
+        if (!even) std::swap(t[2], t[3]);
+        mesh.tetrahedra.push_back(t);
+        mesh.tetrahedron_regions.push_back(RegionId{static_cast<std::uint32_t>(region_of(cube))});
+    } while (std::next_permutation(axes.begin(), axes.end()));
+}
+
+Case GridMesh::make() {
+    chains_.clear();
+    number_segments();
+    std::vector<Place> cubes;
+    for (int x = 0; x < size_[0]; ++x) {
+        for (int y = 0; y < size_[1]; ++y) {
+            for (int z = 0; z < size_[2]; ++z) {
+                if (region_of({x, y, z}) >= 0) cubes.push_back({x, y, z});
             }
-            const bool even = (axes[0] + 1) % 3 == axes[1];
-            if (!even) std::swap(t[2], t[3]);
-            mesh.tetrahedra.push_back(t);
-            mesh.tetrahedron_regions.push_back(RegionId{static_cast<std::uint32_t>(region_of(cube))});
-        } while (std::next_permutation(axes.begin(), axes.end()));
+        }
     }
+    Case result;
+    TetMesh& mesh = result.mesh;
+    place_vertices(mesh, cubes);
+    for (const Place& cube : cubes) fill(mesh, cube);
     for (const Square& s : squares_) {
-        const auto u = static_cast<std::size_t>((s.axis + 1) % 3), v = static_cast<std::size_t>((s.axis + 2) % 3);
-        Place pu = s.corner, pv = s.corner, puv = s.corner;
-        ++pu[u];
-        ++pv[v];
-        ++puv[u];
-        ++puv[v];
-        for (Triangle t : {Triangle{ids.at(s.corner), ids.at(pu), ids.at(puv)},
-                           Triangle{ids.at(s.corner), ids.at(puv), ids.at(pv)}}) {
-            if (s.down) std::swap(t[1], t[2]);
-            mesh.triangles.push_back(t);
+        const auto [p, q, r, t] = corners(s);
+        for (Triangle triangle : {Triangle{ids_.at(p), ids_.at(q), ids_.at(r)}, {ids_.at(p), ids_.at(r), ids_.at(t)}}) {
+            if (s.down) std::swap(triangle[1], triangle[2]);
+            mesh.triangles.push_back(triangle);
             mesh.triangle_facets.push_back(FacetId{s.facet});
         }
     }
     for (std::uint32_t s = 0; s < chains_.size(); ++s) {
         const std::vector<Place> places = line(chains_[s][0], chains_[s][1]);
         for (std::size_t i = 0; i + 1 < places.size(); ++i) {
-            mesh.edges.push_back({ids.at(places[i]), ids.at(places[i + 1])});
+            mesh.edges.push_back({ids_.at(places[i]), ids_.at(places[i + 1])});
             mesh.edge_segments.push_back(SegmentId{s});
         }
     }

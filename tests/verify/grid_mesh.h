@@ -47,24 +47,26 @@ public:
     Point3 shift{};
 
 private:
-    Point3 position(const Place& p) const;
-    std::vector<Place> line(const Place& a, const Place& b) const;
-    void add_chain(std::uint32_t a, std::uint32_t b, const Place& pa, const Place& pb);
-    std::uint32_t vertex(const Place& p);
-
     struct Square {
         std::uint32_t facet;
         int axis;
         bool down;
         Place corner;
     };
+    Point3 position(const Place& p) const;
+    std::vector<Place> line(const Place& a, const Place& b) const;
+    static std::array<Place, 4> corners(const Square& s);
+    void number_segments();
+    void place_vertices(TetMesh& mesh, const std::vector<Place>& cubes);
+    void fill(TetMesh& mesh, const Place& cube) const;
+
     Place size_;
     PiecewiseLinearComplex complex_;
     std::map<Place, std::uint32_t> points_;
     std::vector<Place> places_;
     std::vector<Square> squares_;
     std::vector<std::array<Place, 2>> chains_;  // one per segment number
-    std::set<std::array<Place, 2>> known_;
+    std::map<Place, VertexId> ids_;
 };
 
 /// Labels for a mesh whose facets are polygons of its vertices and that has no added vertices: segments by number, one

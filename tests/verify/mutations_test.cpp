@@ -19,6 +19,9 @@ void expect_broken(const Case& c, const std::string& promise, const ConformingCh
     EXPECT_TRUE(has(check, promise)) << "expected " << promise << ", found:\n" << text(check);
     EXPECT_GE(check.violation_count, check.violations.size());
 }
+bool tells(const Case& c, const std::string& words, const ConformingCheckOptions& options = {}) {
+    return text(check_conforming(c.mesh, c.complex, options)).find(words) != std::string::npos;
+}
 void expect_fine(const Case& c, const ConformingCheckOptions& options = {}) {
     const ConformingCheck check = check_conforming(c.mesh, c.complex, options);
     EXPECT_TRUE(check.ok()) << text(check);
@@ -114,7 +117,25 @@ TEST(CheckBroken, repeated_tetrahedron) {
         c.mesh.tetrahedra.push_back(c.mesh.tetrahedra[0]);
         c.mesh.tetrahedron_regions.push_back(c.mesh.tetrahedron_regions[0]);
         expect_broken(c, "well-formed");
+        EXPECT_TRUE(tells(c, "belongs to tetrahedra"));
     }
+}
+TEST(CheckBroken, flat_tetrahedron) {
+    // Over the two triangles of a side of the cube, ending in the two of the other diagonal: everything matches.
+    Case c = cube(false);
+    c.complex = {};
+    c.complex.positions = c.mesh.positions;
+    TetMesh& m = c.mesh;
+    m.triangles.clear(), m.triangle_facets.clear(), m.edges.clear(), m.edge_segments.clear();
+    m.tetrahedron_regions.assign(7, RegionId{0});
+    const auto v = [&](int x, int y) { return VertexId{find_vertex(c, {x * 1.0, y * 1.0, 0})}; };
+    m.tetrahedra.push_back({v(0, 0), v(1, 0), v(1, 1), v(0, 1)});
+    const bool first = tells(c, "is flat");
+    const bool matched = !tells(c, "belongs to tetrahedra");
+    std::swap(m.tetrahedra.back()[0], m.tetrahedra.back()[1]);
+    EXPECT_TRUE(first && tells(c, "is flat"));
+    EXPECT_NE(matched, !tells(c, "belongs to tetrahedra"));  // one of the two orders is on the right side
+    expect_broken(c, "well-formed");
 }
 TEST(CheckBroken, repeated_vertex) {
     Case c = base();
@@ -125,7 +146,7 @@ TEST(CheckBroken, repeated_vertex) {
         for (VertexId& v : t) {
             if (index_of(v) + 2 != c.mesh.positions.size()) continue;
             v = VertexId{index_of(v) + 1};
-            expect_broken(c, "well-formed");
+            EXPECT_TRUE(tells(c, "are both at"));
             return;
         }
     }
@@ -404,6 +425,73 @@ TEST(CheckBroken, chain_around_a_corner) {
         d.mesh.edge_segments.push_back(d.mesh.edge_segments[0]);
         expect_broken(d, "conforming");
     }
+}
+/// A facet on the floor, so that added points lie on its sides and inside.
+Case floor_of(int n) {
+    GridMesh grid(n, n, 1);
+    grid.rectangle(2, {0, 0, 0}, {n, n, 0});
+    grid.region_of = [](const Place&) { return 0; };
+    return grid.make();
+}
+TEST(CheckBroken, chain_that_goes_back) {
+    Case c = floor_of(3);
+    const auto v = [&](int x, int y) { return VertexId{find_vertex(c, {x * 1.0, y * 1.0, 0})}; };
+    const SegmentId first = c.mesh.edge_segments[0];
+    ASSERT_EQ(c.mesh.edges[0], (Edge{v(0, 0), v(1, 0)}));
+    // Through inner points, all steps along mesh edges; with this tolerance nothing is too far away.
+    c.mesh.edges[1] = {v(1, 0), v(2, 1)};
+    for (const Edge& e : {Edge{v(2, 1), v(1, 1)}, Edge{v(1, 1), v(2, 2)}, Edge{v(2, 2), v(3, 2)}}) {
+        c.mesh.edges.push_back(e);
+        c.mesh.edge_segments.push_back(first);
+    }
+    c.mesh.edges[2] = {v(3, 2), v(3, 1)};
+    c.mesh.edges.push_back({v(3, 1), v(3, 0)});
+    c.mesh.edge_segments.push_back(first);
+    EXPECT_TRUE(tells(c, "goes back", {.deviation = {10.0, false}}));
+    expect_broken(c, "conforming", {.deviation = {10.0, false}});
+}
+TEST(CheckBroken, chain_off_its_segment) {
+    const Case b = floor_of(3);
+    const std::uint32_t v = find_vertex(b, {1, 0, 0});
+    for (const double off : {1e-9, 1e-13}) {
+        Case c = b;
+        c.mesh.positions[v].y = -off;
+        EXPECT_EQ(tells(c, "away from segment"), off > 1e-12);
+        EXPECT_DOUBLE_EQ(check_conforming(c.mesh, c.complex).max_deviation, off);
+        EXPECT_TRUE(tells(c, "away from segment", {.deviation = {off / 2, false}}));
+        EXPECT_FALSE(tells(c, "away from segment", {.deviation = {off * 2, false}}));
+    }
+}
+TEST(CheckBroken, chain_through_an_input_point) {
+    GridMesh grid(2, 1, 1);
+    grid.segment({0, 0, 0}, {2, 0, 0});
+    grid.point({1, 0, 0});
+    grid.region_of = [](const Place&) { return 0; };
+    expect_broken(grid.make(), "conforming");
+}
+TEST(CheckBroken, chains_that_cross) {
+    GridMesh grid(2, 2, 1);
+    grid.segment({0, 1, 0}, {2, 1, 0});
+    grid.region_of = [](const Place&) { return 0; };
+    expect_fine(grid.make());
+    grid.segment({1, 0, 0}, {1, 2, 0});
+    expect_broken(grid.make(), "conforming");
+}
+TEST(CheckBroken, isolated_segment_across_a_hole) {
+    GridMesh grid(3, 3, 1);
+    std::vector<Place> squares;
+    for (int x = 0; x < 3; ++x) {
+        for (int y = 0; y < 3; ++y) {
+            if (x != 1 || y != 1) squares.push_back({x, y, 0});
+        }
+    }
+    grid.region_of = [](const Place&) { return 0; };
+    grid.facet(2,
+               {{{0, 0, 0}, {3, 0, 0}, {3, 3, 0}, {0, 3, 0}},
+                {{1, 1, 0}, {2, 1, 0}, {2, 2, 0}, {1, 2, 0}},
+                {{1, 1, 0}, {2, 2, 0}}},
+               {{1.5, 1.25, 0}}, squares);
+    expect_broken(grid.make(), "conforming");
 }
 TEST(CheckBroken, missing_triangle) {
     for (const Case& b : all_bases()) {
