@@ -19,23 +19,36 @@
 namespace certa::core {
 
 /// What the scheduler guarantees, said to ThreadSanitizer: everything before the loop happens before every range,
-/// every range before everything after the loop. Debian's oneTBB is not built for it, so it cannot see that by itself.
+/// every range before everything after the loop, also when one throws. Debian's oneTBB is not built for it, so it
+/// cannot see that by itself. Elsewhere these do nothing.
 class LoopFence {
 public:
-#if defined(__SANITIZE_THREAD__)
-    void open() { __tsan_release(&start_); }
-    void enter() { __tsan_acquire(&start_); }
-    void leave() { __tsan_release(&end_); }
-    void close() { __tsan_acquire(&end_); }
+    LoopFence() { release(&start_); }
+    LoopFence(const LoopFence&) = delete;
+    LoopFence& operator=(const LoopFence&) = delete;
+    ~LoopFence() { acquire(&end_); }
+
+    /// Lives while a range is worked on.
+    class Range {
+    public:
+        explicit Range(LoopFence& fence) : fence_(fence) { acquire(&fence_.start_); }
+        Range(const Range&) = delete;
+        Range& operator=(const Range&) = delete;
+        ~Range() { release(&fence_.end_); }
+
+    private:
+        LoopFence& fence_;
+    };
 
 private:
-    char start_ = 0, end_ = 0;
+#if defined(__SANITIZE_THREAD__)
+    static void acquire(char* address) { __tsan_acquire(address); }
+    static void release(char* address) { __tsan_release(address); }
 #else
-    void open() {}
-    void enter() {}
-    void leave() {}
-    void close() {}
+    static void acquire(char*) {}
+    static void release(char*) {}
 #endif
+    char start_ = 0, end_ = 0;
 };
 
 /// Calls body(begin, end) for ranges that cover 0 ... count - 1, each about `grain` long, in any order, from at most
@@ -43,12 +56,10 @@ private:
 template <class Body>
 void parallel_for(std::size_t count, std::size_t grain, const RunControl& control, const Body& body) {
     LoopFence fence;
-    fence.open();
     const auto loop = [&] {
         tbb::parallel_for(tbb::blocked_range<std::size_t>(0, count, grain), [&](const auto& range) {
-            fence.enter();
+            const LoopFence::Range inside(fence);
             body(range.begin(), range.end());
-            fence.leave();
         });
     };
     const int available = tbb::this_task_arena::max_concurrency();
@@ -57,7 +68,6 @@ void parallel_for(std::size_t count, std::size_t grain, const RunControl& contro
     } else {
         tbb::task_arena(static_cast<int>(control.threads)).execute(loop);
     }
-    fence.close();
 }
 
 }  // namespace certa::core
