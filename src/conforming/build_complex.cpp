@@ -13,9 +13,14 @@
 #include <bit>
 #include <cmath>
 
-#include "conforming/flat_facet.h"
+#include "delaunay/flat_facet.h"
 
 namespace certa::conforming {
+
+using delaunay::FlatFacet;
+using delaunay::FlatSide;
+using delaunay::FlatState;
+using delaunay::Projection;
 namespace {
 
 /// Unordered pairs of points to segment numbers.
@@ -214,10 +219,10 @@ private:
     void collect_polygons(std::uint32_t facet) {
         FlatFacet flat;
         if (is_involved(input_, facet, scratch_)) {
-            flat = flatten_facet(input_, facet, Projection(complex_.frames[facet].normal));
+            flat = delaunay::flatten_facet(input_, facet, Projection(complex_.frames[facet].normal));
             if (flat.state == FlatState::crossing) assume_rings(flat);
         } else {
-            flat = list_sides(input_, facet);
+            flat = delaunay::list_sides(input_, facet);
             assume_rings(flat);
         }
         for (const FlatSide& side : flat.sides) {

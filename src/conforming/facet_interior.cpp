@@ -12,11 +12,14 @@
 #include <optional>
 #include <string>
 
-#include "conforming/flat_facet.h"
+#include "delaunay/flat_facet.h"
 #include "delaunay/planar.h"
 #include "exact/orientation.h"
 
 namespace certa::conforming {
+
+using delaunay::Projection;
+using exact::Point2;
 namespace {
 
 using PointTriangle = std::array<std::uint32_t, 3>;

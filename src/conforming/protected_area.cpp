@@ -18,10 +18,13 @@
 #include <numbers>
 
 #include "conforming/extended_vector.h"
-#include "conforming/flat_facet.h"
+#include "delaunay/flat_facet.h"
 #include "exact/orientation.h"
 
 namespace certa::conforming {
+
+using delaunay::Projection;
+using exact::Point2;
 namespace {
 
 constexpr long double pi = std::numbers::pi_v<long double>;

@@ -4,12 +4,16 @@
 #include <cmath>
 
 #include "conforming/build_complex.h"
-#include "conforming/flat_facet.h"
 #include "conforming/repair.h"
 #include "conforming/validate_messages.h"
 #include "core/vector3.h"
+#include "delaunay/flat_facet.h"
 
 namespace certa::conforming {
+
+using delaunay::FlatFacet;
+using delaunay::FlatState;
+using delaunay::Projection;
 namespace {
 
 double deviation_of(const EditableFacet& facet, const EditableComplex& complex, const Frame& frame) {
@@ -34,7 +38,7 @@ RepairedComplex triangulate_facets(const PiecewiseLinearComplex& input, double p
         const Frame frame = build_frame(input, f);
         const double deviation = deviation_of(edited.facets[f], edited, frame);
         if (deviation <= planarity) continue;
-        const FlatFacet flat = flatten_facet(input, f, Projection(frame.normal));
+        const FlatFacet flat = delaunay::flatten_facet(input, f, Projection(frame.normal));
         if (flat.state == FlatState::crossing || flat.triangles.empty() || !flat.holes_outside.empty()) continue;
         result.repairs.push_back({DefectKind::non_planar_facet,
                                   {{ElementKind::facet, f}},

@@ -10,14 +10,20 @@
 #include <cmath>
 #include <limits>
 
-#include "conforming/flat_facet.h"
 #include "conforming/validate_boxes.h"
 #include "conforming/validate_findings.h"
 #include "conforming/validate_messages.h"
 #include "core/vector3.h"
+#include "delaunay/flat_facet.h"
 #include "exact/orientation.h"
 
 namespace certa::conforming {
+
+using delaunay::FlatFacet;
+using delaunay::FlatSide;
+using delaunay::FlatState;
+using delaunay::Projection;
+using exact::Point2;
 namespace {
 
 /// What is found out about one facet that is more than a triangle.
@@ -42,7 +48,7 @@ public:
         if (complex_.facet_sides[facet_].empty() && complex_.facet_points[facet_].empty()) return {};
         if (!is_planar()) return std::move(result_);
         const Projection projection(frame_.normal);
-        const FlatFacet flat = flatten_facet(input_, facet_, projection);
+        const FlatFacet flat = delaunay::flatten_facet(input_, facet_, projection);
         if (std::none_of(flat.sides.begin(), flat.sides.end(), [](const FlatSide& side) { return side.on_ring; })) {
             refuse_empty();
         } else if (flat.state == FlatState::crossing) {

@@ -4,7 +4,7 @@
 // Inside is combinatorial: a flood from infinity and from each hole point that rings stop and isolated segments do not.
 // Delaunay matters: along a chain of points that are collinear up to rounding it leaves no sliver of chain points only,
 // so two facets that share such a chain share its pieces and nothing else.
-#include "conforming/flat_facet.h"
+#include "delaunay/flat_facet.h"
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -15,7 +15,7 @@
 #include <cmath>
 #include <unordered_map>
 
-namespace certa::conforming {
+namespace certa::delaunay {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
@@ -192,4 +192,4 @@ FlatFacet flatten_facet(const PiecewiseLinearComplex& input, std::uint32_t facet
     return flat;
 }
 
-}  // namespace certa::conforming
+}  // namespace certa::delaunay

@@ -9,7 +9,7 @@
 
 #include "exact/orientation.h"
 
-namespace certa::conforming {
+namespace certa::delaunay {
 
 using exact::Point2;
 
@@ -52,4 +52,4 @@ FlatFacet list_sides(const PiecewiseLinearComplex& input, std::uint32_t facet);
 /// Lays facet `facet` flat. Never throws on bad geometry: see FlatState.
 FlatFacet flatten_facet(const PiecewiseLinearComplex& input, std::uint32_t facet, const Projection& projection);
 
-}  // namespace certa::conforming
+}  // namespace certa::delaunay
