@@ -29,15 +29,33 @@ std::string text_of(const std::string& path, std::uint64_t line, const std::stri
 }  // namespace
 
 const char* name_of(DefectKind kind) {
-    constexpr std::array names{"non_finite_coordinate", "index_out_of_range",         "duplicate_point",
-                               "degenerate_segment",    "repeated_vertex_in_polygon", "degenerate_facet",
-                               "repeated_facet",        "non_planar_facet",           "open_facet",
-                               "self_crossing_facet",   "hole_outside_facet",         "crossing_segments",
-                               "overlapping_segments",  "point_on_segment",           "point_near_segment",
-                               "point_near_facet",      "segment_crosses_facet",      "crossing_facets",
-                               "overlapping_facets",    "region_seed_on_facet",       "conflicting_region_seeds",
-                               "empty_input",           "option_out_of_range",        "coordinate_out_of_range",
-                               "element_outside_facet", "point_on_facet",             "segment_in_facet"};
+    constexpr std::array names{"non_finite_coordinate",
+                               "index_out_of_range",
+                               "duplicate_point",
+                               "degenerate_segment",
+                               "repeated_vertex_in_polygon",
+                               "degenerate_facet",
+                               "repeated_facet",
+                               "non_planar_facet",
+                               "open_facet",
+                               "self_crossing_facet",
+                               "hole_outside_facet",
+                               "crossing_segments",
+                               "overlapping_segments",
+                               "point_on_segment",
+                               "point_near_segment",
+                               "point_near_facet",
+                               "segment_crosses_facet",
+                               "crossing_facets",
+                               "overlapping_facets",
+                               "region_seed_on_facet",
+                               "conflicting_region_seeds",
+                               "empty_input",
+                               "option_out_of_range",
+                               "coordinate_out_of_range",
+                               "element_outside_facet",
+                               "point_on_facet",
+                               "segment_in_facet"};
     return names.at(static_cast<std::size_t>(kind));
 }
 
