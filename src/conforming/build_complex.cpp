@@ -6,13 +6,11 @@
 // twice the digits when it cancels.
 #include "conforming/build_complex.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
 
+#include "core/parallel.h"
 #include "delaunay/flat_facet.h"
 
 namespace certa::conforming {
@@ -285,8 +283,8 @@ Complex build_complex(const PiecewiseLinearComplex& input) {
     complex.points = input.positions;
     const std::size_t facets = input.facet_count();
     complex.frames.resize(facets);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, facets, 1024), [&](const auto& range) {
-        for (std::size_t f = range.begin(); f < range.end(); ++f) {
+    core::parallel_for(facets, 1024, {}, [&](std::size_t first, std::size_t last) {
+        for (std::size_t f = first; f < last; ++f) {
             complex.frames[f] = build_frame(input, static_cast<std::uint32_t>(f));
         }
     });

@@ -3,9 +3,9 @@
 // the array of nodes beforehand and are built in parallel without any effect on the result.
 #include "conforming/validate_boxes.h"
 
-#include <tbb/parallel_invoke.h>
-
 #include <numeric>
+
+#include "core/parallel.h"
 
 namespace certa::conforming {
 namespace {
@@ -78,7 +78,7 @@ void BoxTree::build(std::uint32_t index, std::uint32_t begin, std::uint32_t end,
     const auto build_left = [&] { build(index + 1, begin, middle, boxes); };
     const auto build_right = [&] { build(right, middle, end, boxes); };
     if (end - begin > 4096) {
-        tbb::parallel_invoke(build_left, build_right);
+        core::parallel_invoke(build_left, build_right);
     } else {
         build_left();
         build_right();

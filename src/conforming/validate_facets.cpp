@@ -3,8 +3,6 @@
 //
 // A facet that is one triangle has nothing to check here. The others are laid flat (see flat_facet.h); only when that
 // fails are their sides compared with each other to name what crosses.
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -13,6 +11,7 @@
 #include "conforming/validate_boxes.h"
 #include "conforming/validate_findings.h"
 #include "conforming/validate_messages.h"
+#include "core/parallel.h"
 #include "core/vector3.h"
 #include "delaunay/flat_facet.h"
 #include "exact/orientation.h"
@@ -276,8 +275,9 @@ Pieces check_facets(const PiecewiseLinearComplex& input, const Complex& complex,
         if (!is_plain_triangle(input, f)) involved.push_back(f);
     }
     std::vector<FacetResult> results(involved.size());
-    tbb::parallel_for(std::size_t{0}, involved.size(),
-                      [&](std::size_t i) { results[i] = FacetCheck(input, complex, options, involved[i]).run(); });
+    core::parallel_for(involved.size(), 16, {}, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) results[i] = FacetCheck(input, complex, options, involved[i]).run();
+    });
     Pieces pieces;
     pieces.near.resize(facets, 0.0);
     pieces.simplices.reserve(facets);

@@ -4,9 +4,7 @@
 // and a separating line; all corners of the intersection (validate_contacts.h), from which the finding is read off;
 // and, for pairs that are close without touching, the tests for points and segments within rounding. Two faces of a
 // known simplicial complex are never compared. Findings are sorted: threads leave no trace.
-#include <tbb/blocked_range.h>
 #include <tbb/enumerable_thread_specific.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +12,7 @@
 #include "conforming/validate_boxes.h"
 #include "conforming/validate_findings.h"
 #include "conforming/validate_near.h"
+#include "core/parallel.h"
 #include "core/vector3.h"
 #include "exact/orientation.h"
 
@@ -285,8 +284,8 @@ Box box_of(const Complex& complex, const Pieces& pieces, std::uint32_t piece) {
 
 std::vector<Box> boxes_of(const Complex& complex, const Pieces& pieces) {
     std::vector<Box> boxes(pieces.simplices.size());
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, boxes.size(), 4096), [&](const auto& range) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i) {
+    core::parallel_for(boxes.size(), 4096, {}, [&](std::size_t first, std::size_t last) {
+        for (std::size_t i = first; i < last; ++i) {
             boxes[i] = box_of(complex, pieces, static_cast<std::uint32_t>(i));
         }
     });
@@ -345,9 +344,9 @@ std::vector<Finding> find_findings(const Complex& complex, const Pieces& pieces,
     if (std::find(active.begin(), active.end(), 1) == active.end()) return {};
     const BoxTree tree(boxes_of(complex, pieces), active);
     tbb::enumerable_thread_specific<PairTester> testers([&] { return PairTester(complex, pieces); });
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, tree.leaf_count(), 16), [&](const auto& range) {
+    core::parallel_for(tree.leaf_count(), 16, {}, [&](std::size_t first, std::size_t last) {
         PairTester& tester = testers.local();
-        for (std::size_t leaf = range.begin(); leaf < range.end(); ++leaf) {
+        for (std::size_t leaf = first; leaf < last; ++leaf) {
             tree.visit_pairs(leaf, [&](std::uint32_t i, std::uint32_t j) { tester.test(i, j); });
         }
     });

@@ -2,8 +2,6 @@
 // coordinates that are no numbers, points that coincide, sides without length, facets without area, facets given twice.
 //
 // Each check is one pass; a later check runs only when the ones that it relies on found nothing.
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,6 +10,7 @@
 
 #include "conforming/validate.h"
 #include "conforming/validate_messages.h"
+#include "core/parallel.h"
 #include "exact/orientation.h"
 
 namespace certa::conforming {
@@ -317,12 +316,9 @@ private:
     void check_areas() {
         const std::size_t facets = input_.facet_count();
         flat_.assign(facets, 0);
-        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, static_cast<std::uint32_t>(facets), 1024),
-                          [&](const auto& range) {
-                              for (std::uint32_t f = range.begin(); f < range.end(); ++f) {
-                                  flat_[f] = has_ring(f) && !has_area(f);
-                              }
-                          });
+        core::parallel_for(facets, 1024, {}, [&](std::size_t first, std::size_t last) {
+            for (auto f = static_cast<std::uint32_t>(first); f < last; ++f) flat_[f] = has_ring(f) && !has_area(f);
+        });
         for (std::uint32_t f = 0; f < facets; ++f) {
             if (!flat_[f]) continue;
             const std::uint32_t corner = input_.polygon_offsets[input_.facet_offsets[f]];
@@ -368,8 +364,8 @@ private:
     void check_repeated_facets() {
         const auto facets = static_cast<std::uint32_t>(input_.facet_count());
         std::vector<std::pair<std::uint64_t, std::uint32_t>> keys(facets);
-        tbb::parallel_for(tbb::blocked_range<std::uint32_t>(0, facets, 1024), [&](const auto& range) {
-            for (std::uint32_t f = range.begin(); f < range.end(); ++f) {
+        core::parallel_for(facets, 1024, {}, [&](std::size_t first, std::size_t last) {
+            for (auto f = static_cast<std::uint32_t>(first); f < last; ++f) {
                 std::uint64_t sum = 0;
                 visit_sides(f, [&](std::uint64_t key) { sum += mix(key); });
                 keys[f] = {sum, f};

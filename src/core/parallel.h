@@ -3,6 +3,7 @@
 #include <certa/run_control.h>
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 
 #include <cstddef>
@@ -68,6 +69,21 @@ void parallel_for(std::size_t count, std::size_t grain, const RunControl& contro
     } else {
         tbb::task_arena(static_cast<int>(control.threads)).execute(loop);
     }
+}
+
+/// Calls both, possibly at the same time.
+template <class First, class Second>
+void parallel_invoke(const First& first, const Second& second) {
+    LoopFence fence;
+    tbb::parallel_invoke(
+        [&] {
+            const LoopFence::Range inside(fence);
+            first();
+        },
+        [&] {
+            const LoopFence::Range inside(fence);
+            second();
+        });
 }
 
 }  // namespace certa::core

@@ -1,11 +1,10 @@
 #pragma once
 // Findings of many independent items, gathered in their order for any number of threads.
 #include <certa/run_control.h>
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <vector>
 
+#include "core/parallel.h"
 #include "verify/report.h"
 
 namespace certa::verify {
@@ -16,8 +15,8 @@ void for_each_item(std::size_t count, const RunControl& control, Findings& findi
     constexpr std::size_t chunk = 4096;
     const std::size_t chunks = (count + chunk - 1) / chunk;
     std::vector<Findings> parts(chunks);
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, chunks, 1), [&](const auto& range) {
-        for (std::size_t c = range.begin(); c < range.end(); ++c) {
+    core::parallel_for(chunks, 1, control, [&](std::size_t first, std::size_t last) {
+        for (std::size_t c = first; c < last; ++c) {
             if (control.cancelled()) return;
             const std::size_t end = std::min(count, (c + 1) * chunk);
             for (std::size_t i = c * chunk; i < end; ++i) visit(i, parts[c]);

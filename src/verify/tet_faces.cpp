@@ -2,11 +2,10 @@
 // are small, are sorted on their own, and equal entries become neighbours.
 #include "verify/tet_faces.h"
 
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <stdexcept>
+
+#include "core/parallel.h"
 
 namespace certa::verify {
 namespace {
@@ -42,8 +41,8 @@ void TetFaces::collect_faces(const TetMesh& mesh) {
         const auto f = sorted_face(mesh, h);
         entries_[next[f[0]]++] = {f[1], f[2], h};
     }
-    tbb::parallel_for(tbb::blocked_range<std::size_t>(0, vertices, 4096), [&](const auto& range) {
-        for (std::size_t v = range.begin(); v < range.end(); ++v) {
+    core::parallel_for(vertices, 4096, {}, [&](std::size_t first, std::size_t last) {
+        for (std::size_t v = first; v < last; ++v) {
             std::sort(entries_.begin() + static_cast<std::ptrdiff_t>(face_offsets_[v]),
                       entries_.begin() + static_cast<std::ptrdiff_t>(face_offsets_[v + 1]),
                       [](const Entry& a, const Entry& b) {
