@@ -69,7 +69,20 @@ int oracle_side(const std::vector<Point3>& ring, const Point3& p, const Point3& 
     return sgn(dot(n, cross(rational(q) - rational(p), rational(v) - rational(p))));
 }
 
-enum Scale { small_integers, unit, huge, tiny, denormal, mixed, shifted, near_lattice, scale_count };
+enum Scale {
+    small_integers,
+    unit,
+    huge,
+    tiny,
+    denormal,
+    mixed,
+    shifted,
+    near_lattice,
+    brink,
+    uneven,
+    sphere,
+    scale_count
+};
 
 double coordinate(core::Random& random, int scale) {
     switch (scale) {
@@ -95,6 +108,23 @@ double coordinate(core::Random& random, int scale) {
     }
 }
 Point3 point(core::Random& random, int scale) {
+    const auto small = [&] { return static_cast<double>(random.below(9)) - 4.0; };
+    if (scale == brink) {
+        // Products of as many factors as the forms have are denormal: 2^-1074 is the least number.
+        static thread_local int exponent = 0;
+        if (random.below(8) == 0)
+            exponent = -1074 / static_cast<int>(2 + random.below(5)) + static_cast<int>(random.below(6));
+        return {std::ldexp(small(), exponent), std::ldexp(small(), exponent), std::ldexp(small(), exponent)};
+    }
+    // A product of two underflows, the third makes it large again.
+    if (scale == uneven) return {std::ldexp(small(), -540), std::ldexp(small(), -540), std::ldexp(small(), 560)};
+    if (scale == sphere) {
+        // Integers of 49 bits on one sphere about the origin, at times off by one.
+        std::array<double, 3> c{561850441793531.0, 307445734561825.0, 448181855392003.0};
+        for (double& x : c) x = (random.coin() ? x : -x) + (random.below(6) == 0 ? 1.0 : 0.0);
+        for (std::size_t i = 3; i > 1; --i) std::swap(c[i - 1], c[random.below(i)]);
+        return {c[0], c[1], c[2]};
+    }
     return {coordinate(random, scale), coordinate(random, scale), coordinate(random, scale)};
 }
 
