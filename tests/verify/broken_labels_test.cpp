@@ -238,6 +238,17 @@ TEST(CheckOptions, merge_coplanar) {
     Case marked = without;
     for (int i = 0; i < 12; ++i) marked.complex.facet_markers.push_back(i % 2);
     expect_broken(marked, "conforming", {.merge_coplanar = true});
+    Case given = unlabelled;
+    Edge diagonal{};  // of the first square
+    for (std::size_t i = 0, n = 0; i < 3; ++i) {
+        const Triangle& second = c.mesh.triangles[1];
+        const VertexId v = c.mesh.triangles[0][i];
+        if (std::find(second.begin(), second.end(), v) != second.end()) diagonal[n++] = v;
+    }
+    given.complex.segments.push_back(diagonal);
+    expect_broken(given, "conforming", {.merge_coplanar = true});
+    given.mesh.triangle_facets[1] = FacetId{1};
+    expect_fine(given, {.merge_coplanar = true});
     Case bent = without;
     const std::uint32_t v = find_vertex(bent, {1, 1, 1});
     bent.complex.positions[v].x = bent.mesh.positions[v].x = std::nextafter(1.0, 2.0);

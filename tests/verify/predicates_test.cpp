@@ -113,7 +113,7 @@ Point3 point(core::Random& random, int scale) {
         // Products of as many factors as the forms have are denormal: 2^-1074 is the least number.
         static thread_local int exponent = 0;
         if (random.below(8) == 0)
-            exponent = -1074 / static_cast<int>(2 + random.below(5)) + static_cast<int>(random.below(6));
+            exponent = -1074 / static_cast<int>(2 + random.below(5)) + static_cast<int>(random.below(6)) - 4;
         return {std::ldexp(small(), exponent), std::ldexp(small(), exponent), std::ldexp(small(), exponent)};
     }
     // A product of two underflows, the third makes it large again.
