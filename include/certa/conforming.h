@@ -113,7 +113,9 @@ struct ConformingCheckOptions {
     bool merge_coplanar =
         false;  ///< the mesh was made with merge_coplanar: its triangles name the lowest facet of each group
     Length planarity{1e-9, true};
-    Length deviation{1e-12, true};  ///< largest distance of a vertex from the segment or facet that carries it
+    /// Largest distance of an added vertex from the segment or facet that carries it. When relative to the diagonal, at
+    /// least 8 roundings of the largest coordinate are allowed, which far from the origin may be more.
+    Length deviation{1e-12, true};
 };
 
 /// One broken promise: which, where, and the elements of the mesh that show it.
@@ -137,7 +139,9 @@ struct ConformingCheck {
 ///
 /// Input:      any mesh with constraint triangles labelled by 0-based facet and edges labelled by 0-based segment, the
 ///             segments numbered as in ConformResult::segments. Missing edge labels: segments are looked up in the
-///             mesh.
+///             mesh. A complex that `conform` accepts: where its own faces cross, the answer is for its faces one by one.
+/// Result:     a cancelled check counts as one violation: nothing is proved.
+/// Errors:     InputError when indices or coordinates of the complex make no sense, or an option is out of range.
 /// Guarantee:  exact on the doubles given; shares no code with `conform`.
 /// Cost:       O(n log n); deterministic.
 ConformingCheck check_conforming(const TetMesh& mesh, const PiecewiseLinearComplex& complex,

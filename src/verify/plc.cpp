@@ -242,7 +242,7 @@ std::vector<Point3> find_plane(const PiecewiseLinearComplex& complex, std::uint3
 
 bool are_coplanar(const PiecewiseLinearComplex& complex, std::uint32_t first, std::uint32_t second) {
     const std::vector<Point3> plane = find_plane(complex, first);
-    if (plane.empty()) return false;
+    if (plane.empty() || find_plane(complex, second).empty()) return false;
     bool coplanar = true;
     const auto test = [&](std::uint32_t v) {
         coplanar = coplanar && orientation(plane[0], plane[1], plane[2], complex.positions[v]) == 0;
