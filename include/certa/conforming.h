@@ -28,8 +28,9 @@ struct ConformOptions {
     bool repair = false;           ///< fix what has one obvious meaning, see ConformResult::repairs
     bool keep_outside = false;     ///< emit region 0 up to the convex hull
     Length planarity{1e-9, true};  ///< largest distance of a facet's point from the facet's plane
-    Length min_feature{1e-12, true};          ///< stop with Outcome::below_min_feature below this length
-    std::optional<std::uint64_t> max_points = std::nullopt;  ///< stop with Outcome::over_budget above this number of vertices
+    Length min_feature{1e-12, true};  ///< stop with Outcome::below_min_feature below this length
+    std::optional<std::uint64_t> max_points =
+        std::nullopt;  ///< stop with Outcome::over_budget above this number of vertices
 };
 
 /// Counts and times of one run; every length in the input's unit, every time in seconds.
@@ -70,7 +71,7 @@ ConformResult conform(const PiecewiseLinearComplex& complex, const ConformOption
 
 /// What `repair` and `triangulate` make of a complex before anything else.
 struct RepairedComplex {
-    PiecewiseLinearComplex complex;  ///< the input's points first, unchanged; facet i < input's count stays facet i
+    PiecewiseLinearComplex complex;      ///< the input's points first, unchanged; facet i < input's count stays facet i
     std::vector<FacetId> facet_sources;  ///< per facet of `complex`: the input's facet it is, or is a part of
     std::vector<Defect> repairs;         ///< what was done, element by element, with the numbers of the moment
 };
@@ -139,7 +140,8 @@ struct ConformingCheck {
 ///
 /// Input:      any mesh with constraint triangles labelled by 0-based facet and edges labelled by 0-based segment, the
 ///             segments numbered as in ConformResult::segments. Missing edge labels: segments are looked up in the
-///             mesh. A complex that `conform` accepts: where its own faces cross, the answer is for its faces one by one.
+///             mesh. A complex that `conform` accepts: where its own faces cross, the answer is for its faces one by
+///             one.
 /// Result:     a cancelled check counts as one violation: nothing is proved.
 /// Errors:     InputError when indices or coordinates of the complex make no sense, or an option is out of range.
 /// Guarantee:  exact on the doubles given; shares no code with `conform`.
