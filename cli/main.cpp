@@ -37,7 +37,9 @@ int run(int argc, char** argv) {
     app.set_version_flag("--version", version_text(), "print version, commit and library versions");
     app.require_subcommand(1);
     certa::cli::Action action;
+#ifdef CERTA_HAS_CONFORM
     certa::cli::add_conform_command(app, action);
+#endif
     certa::cli::add_check_command(app, action);
     certa::cli::add_info_command(app, action);
     certa::cli::add_convert_command(app, action);
