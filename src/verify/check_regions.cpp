@@ -277,9 +277,9 @@ void check_numbers(const Subject& subject, const Components& components, std::si
     }
     const Components::Component* previous = nullptr;
     for (const auto& [region, c] : by_region) {
-        const auto tell = [&](const std::string& message) {
+        const auto tell = [&, number = region, c = c](const std::string& message) {  // clang 14 captures no bindings
             findings.add(Promise::labelled, {tetrahedron_ref(c->first)}, subject.at(c->lowest),
-                         "region " + std::to_string(region) + message);
+                         "region " + std::to_string(number) + message);
         };
         if (region > by_region.size() + removed) {
             tell(" has a number too high: there are " + std::to_string(by_region.size() + removed));
