@@ -30,7 +30,7 @@ using PointTriangle = std::array<std::uint32_t, 3>;
 }
 
 /// The third corner of a facet whose sides are the three boundary sides of a triangle.
-std::optional<PointTriangle> triangle_of(const Complex& complex, std::uint32_t facet) {
+std::optional<PointTriangle> corners_of(const Complex& complex, std::uint32_t facet) {
     const auto sides = complex.facet_sides[facet];
     if (sides.size() != 3 || complex.facet_points[facet].size() != 0) return std::nullopt;
     const auto& first = complex.segments[sides[0].segment];
@@ -55,10 +55,7 @@ int orientation(const Complex& complex, const Projection& projection, const Poin
     return exact::orient2d(p[0], p[1], p[2]);
 }
 
-void cover_triangle(const Complex& complex, std::uint32_t facet, PointTriangle t, FacetInterior& result) {
-    const int turn = orientation(complex, Projection(complex.frames[facet].normal), t);
-    if (turn == 0) fail(facet, "has no area");
-    if (turn < 0) std::swap(t[0], t[1]);
+void cover_triangle(const Complex& complex, std::uint32_t facet, const PointTriangle& t, FacetInterior& result) {
     for (const Side& side : complex.facet_sides[facet]) {
         const auto& ends = complex.segments[side.segment];
         const auto at = std::find(t.begin(), t.end(), ends[0]) - t.begin();
@@ -125,6 +122,15 @@ void gather_sheets(const Complex& complex, FacetInterior& result) {
 }
 
 }  // namespace
+
+std::optional<PointTriangle> triangle_of(const Complex& complex, std::uint32_t facet) {
+    std::optional<PointTriangle> t = corners_of(complex, facet);
+    if (!t) return std::nullopt;
+    const int turn = orientation(complex, Projection(complex.frames[facet].normal), *t);
+    if (turn == 0) return std::nullopt;
+    if (turn < 0) std::swap((*t)[0], (*t)[1]);
+    return t;
+}
 
 FacetInterior build_facet_interior(const Complex& complex) {
     FacetInterior result;

@@ -2,6 +2,7 @@
 // What a facet covers of its plane: triangles over its own points, and on which side of each of its sides it lies.
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "conforming/complex.h"
@@ -16,6 +17,10 @@ struct Sheet {
     std::uint32_t facet = 0;
     std::uint8_t cover = 0;
 };
+
+/// The corners of a facet that is one triangle with nothing on it, counter-clockwise about its normal; exact. Nothing
+/// for any other facet, or without area.
+std::optional<std::array<std::uint32_t, 3>> triangle_of(const Complex& complex, std::uint32_t facet);
 
 struct FacetInterior {
     /// Per facet, triangles over input points that tile it, counter-clockwise in its frame.

@@ -97,6 +97,7 @@ struct Delaunay3::Impl {
         zone.vertices.clear();
         zone.edges.clear();
         zone.removed_marks.clear();
+        zone.border_marks.clear();
         for (const CellHandle cell : conflict) {
             std::array<std::uint32_t, 4> ids;
             for (int i = 0; i < 4; ++i) ids[i] = id_of(cell->vertex(i));
@@ -114,6 +115,10 @@ struct Delaunay3::Impl {
             const std::uint32_t mark = face.first->info().marks[face.second];
             if (mark != no_index) zone.removed_marks.push_back(mark);
         }
+        for (const Facet& face : hole) {
+            const std::uint32_t mark = face.first->info().marks[face.second];
+            if (mark != no_index) zone.border_marks.push_back(mark);
+        }
     }
 
     void release_conflicts() {
@@ -129,15 +134,23 @@ Delaunay3::~Delaunay3() = default;
 Delaunay3::Delaunay3(Delaunay3&&) noexcept = default;
 Delaunay3& Delaunay3::operator=(Delaunay3&&) noexcept = default;
 
-void Delaunay3::build(std::span<const Point3> points) {
+void Delaunay3::build(std::span<const Point3> points, std::span<const std::uint32_t> left_out) {
     std::vector<std::pair<Kernel::Point_3, std::uint32_t>> input;
     input.reserve(points.size());
-    for (const Point3& p : points) input.emplace_back(to_cgal(p), static_cast<std::uint32_t>(input.size()));
+    auto skip = left_out.begin();
+    for (std::uint32_t i = 0; i < points.size(); ++i) {
+        if (skip != left_out.end() && *skip == i) {
+            ++skip;
+        } else {
+            input.emplace_back(to_cgal(points[i]), i);
+        }
+    }
+    impl_->release_conflicts();
     impl_->triangulation.clear();
     impl_->triangulation.insert(input.begin(), input.end());
-    CERTA_ASSERT(impl_->triangulation.number_of_vertices() == points.size());
+    CERTA_ASSERT(impl_->triangulation.number_of_vertices() == input.size());
     positions_.assign(points.begin(), points.end());
-    impl_->handles.resize(points.size());
+    impl_->handles.assign(points.size(), VertexHandle());
     for (const VertexHandle v : impl_->triangulation.finite_vertex_handles()) impl_->handles[v->info()] = v;
 }
 
@@ -156,6 +169,7 @@ const ConflictZone& Delaunay3::find_conflicts(const Point3& place, std::uint32_t
         s.zone.vertices.assign(1, cell->vertex(li)->info());
         s.zone.edges.clear();
         s.zone.removed_marks.clear();
+        s.zone.border_marks.clear();
         return s.zone;
     }
     s.triangulation.find_conflicts(p, cell, std::back_inserter(s.hole), std::back_inserter(s.conflict),
@@ -263,6 +277,7 @@ Delaunay3::Cells Delaunay3::collect_cells() const {
     // finite and an infinite cell, and infinite cells touch each other across infinite faces, which carry no marks.
     std::vector<CellHandle> star;
     for (const VertexHandle v : impl_->handles) {
+        if (v == VertexHandle()) continue;
         star.clear();
         t.incident_cells(v, std::back_inserter(star));
         std::vector<std::pair<std::array<std::uint32_t, 4>, CellHandle>> fresh;
@@ -285,6 +300,28 @@ Delaunay3::Cells Delaunay3::collect_cells() const {
         cells.components.push_back(cell->info().component);
     }
     return cells;
+}
+
+bool is_inside_diametral_ball(const Point3& p, const Point3& a, const Point3& b, const Point3& c) {
+    return CGAL::side_of_bounded_sphere(to_cgal(a), to_cgal(b), to_cgal(c), to_cgal(p)) == CGAL::ON_BOUNDED_SIDE;
+}
+
+std::array<std::uint32_t, 2> Delaunay3::components_beside(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const Facet face = impl_->find_face(a, b, c);
+    CERTA_ASSERT(face.first != CellHandle());
+    return {face.first->info().component, face.first->neighbor(face.second)->info().component};
+}
+
+void Delaunay3::components_around(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& components) const {
+    components.clear();
+    const VertexHandle va = impl_->handles[a], vb = impl_->handles[b];
+    const CellHandle start = impl_->find_cell(va, vb);
+    CERTA_ASSERT(start != CellHandle());
+    auto around = impl_->triangulation.incident_cells(start, start->index(va), start->index(vb));
+    const auto begin = around;
+    do {
+        if (!impl_->triangulation.is_infinite(around)) components.push_back(around->info().component);
+    } while (++around != begin);
 }
 
 std::uint32_t Delaunay3::locate_component(const Point3& place) const {

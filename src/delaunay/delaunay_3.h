@@ -19,6 +19,7 @@ struct ConflictZone {
     std::vector<std::uint32_t> vertices;              ///< of the zone's cells, each once
     std::vector<std::array<std::uint32_t, 2>> edges;  ///< of the zone's cells, repeated; some survive
     std::vector<std::uint32_t> removed_marks;         ///< marks of the faces that disappear
+    std::vector<std::uint32_t> border_marks;          ///< marks of the faces around the zone, which stay
 };
 
 class Delaunay3 {
@@ -28,8 +29,9 @@ public:
     Delaunay3(Delaunay3&&) noexcept;
     Delaunay3& operator=(Delaunay3&&) noexcept;
 
-    /// Triangulates distinct points; ids are their indices. Cost: O(n log n) on surfaces in practice.
-    void build(std::span<const Point3> points);
+    /// Triangulates points; ids are their indices. Points in `left_out` (sorted) get an id but no vertex: nothing may
+    /// ask for them. The others are distinct. Cost: O(n log n) on surfaces in practice.
+    void build(std::span<const Point3> points, std::span<const std::uint32_t> left_out = {});
 
     bool is_solid() const;  ///< the points span space
     std::size_t size() const { return positions_.size(); }
@@ -61,6 +63,9 @@ public:
         std::uint32_t component_count = 1;
     };
     Cells collect_cells() const;
+    /// The components of the cells on both sides of a face, or around an edge, which must be present.
+    std::array<std::uint32_t, 2> components_beside(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+    void components_around(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& components) const;
     /// The component (as in `cells`) that holds a place; no_index on a marked face.
     std::uint32_t locate_component(const Point3& place) const;
 
@@ -69,5 +74,8 @@ private:
     std::unique_ptr<Impl> impl_;
     std::vector<Point3> positions_;
 };
+
+/// Whether p is strictly inside the ball that has the circumcircle of abc as a great circle; exact.
+bool is_inside_diametral_ball(const Point3& p, const Point3& a, const Point3& b, const Point3& c);
 
 }  // namespace certa::delaunay
