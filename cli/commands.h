@@ -13,5 +13,6 @@ void add_conform_command(CLI::App& app, Action& action);
 void add_check_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_convert_command(CLI::App& app, Action& action);
+void add_view_command(CLI::App& app, Action& action);
 
 }  // namespace certa::cli

@@ -43,6 +43,7 @@ int run(int argc, char** argv) {
     certa::cli::add_check_command(app, action);
     certa::cli::add_info_command(app, action);
     certa::cli::add_convert_command(app, action);
+    certa::cli::add_view_command(app, action);
 
     if (argc < 2) {
         std::fputs(app.help().c_str(), stderr);

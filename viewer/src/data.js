@@ -1,0 +1,127 @@
+// Reads what the command embedded in the page: a manifest (JSON) and arrays (base64, little-endian).
+// Positions are single precision in a box around the origin: input = origin + scale * position. Everything else has
+// the smallest type that holds its numbers exactly.
+
+const TYPES = {
+  u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i32: Int32Array,
+  f32: Float32Array, f64: Float64Array, i64: BigInt64Array,
+};
+
+function decodeBase64(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
+  const binary = atob(text);
+  const bytes = new Uint8Array(binary.length);
+  for (let i = 0; i < binary.length; ++i) bytes[i] = binary.charCodeAt(i);
+  return bytes;
+}
+
+/// The array that a reference { id, type, count } of the manifest stands for.
+function readArray(reference) {
+  const text = document.getElementById(`certa-array-${reference.id}`).textContent;
+  const bytes = decodeBase64(text);
+  const Type = TYPES[reference.type];
+  if (bytes.byteLength !== reference.count * Type.BYTES_PER_ELEMENT)
+    throw new Error(`array ${reference.id} is damaged: ${bytes.byteLength} bytes for ${reference.count} numbers`);
+  const array = new Type(bytes.buffer, bytes.byteOffset, reference.count);
+  return reference.type === 'i64' ? Float64Array.from(array, Number) : array;
+}
+
+/// A field whose values are decoded when they are first needed.
+class Field {
+  constructor(entry, key) {
+    Object.assign(this, entry);
+    this.key = key;
+  }
+  get values() {
+    this.decoded ??= readArray(this.array);
+    return this.decoded;
+  }
+  get isLabel() {
+    return this.kind === 'label' && this.components === 1;
+  }
+  get isVector() {
+    return this.components === 3;
+  }
+  /// Distinct values in ascending order, for labels.
+  get categories() {
+    this.distinct ??= Float64Array.from(new Set(this.values)).sort();
+    return this.distinct;
+  }
+  /// Position of each value in `categories`.
+  get ranks() {
+    if (!this.ranked) {
+      const places = new Map();
+      this.categories.forEach((value, i) => places.set(value, i));
+      this.ranked = Uint32Array.from(this.values, (value) => places.get(value));
+    }
+    return this.ranked;
+  }
+  /// The middle 96 % of the values, from a sample: what the colours cover at first.
+  get bulk() {
+    if (!this.sampled) {
+      const step = Math.max(1, Math.floor(this.values.length / 20000));
+      const sample = [];
+      for (let i = 0; i < this.values.length; i += step) if (Number.isFinite(this.values[i])) sample.push(this.values[i]);
+      sample.sort((a, b) => a - b);
+      const at = (share) => sample[Math.min(sample.length - 1, Math.floor(share * sample.length))];
+      this.sampled = sample.length ? [at(0.02), at(0.98)] : [0, 1];
+    }
+    return this.sampled;
+  }
+}
+
+/// One file of the page.
+export class Model {
+  constructor(entry, index) {
+    this.entry = entry;
+    this.index = index;
+    this.name = entry.name;
+    this.remark = entry.remark ?? '';
+    const named = new Map();
+    this.fields = entry.fields.map((field) => {
+      // Two fields of one name differ in what they are given on.
+      const key = named.has(field.name) ? `${field.name}@${field.location}` : field.name;
+      named.set(field.name, true);
+      return new Field(field, key);
+    });
+    this.counts = { vertices: entry.positions.count / 3, ...entry.counts };
+  }
+  array(name) {
+    this.arrays ??= {};
+    return (this.arrays[name] ??= this.entry[name] ? readArray(this.entry[name]) : new Uint32Array(0));
+  }
+  get positions() {
+    return this.array('positions');
+  }
+  get tetrahedra() {
+    return this.array('tetrahedra');
+  }
+  get hasSolid() {
+    return this.counts.tetrahedra > 0;
+  }
+  get hasSurface() {
+    return this.counts.polygons > 0;
+  }
+  /// Half the diagonal of the box, in the units of `positions`.
+  get radius() {
+    const [hx, hy, hz] = this.halfExtents;
+    return Math.hypot(hx, hy, hz) || 1;
+  }
+  get halfExtents() {
+    const { lower, upper, scale } = this.entry;
+    return lower.map((low, i) => (upper[i] / 2 - low / 2) / scale);
+  }
+  /// A point in the input's unit.
+  place(x, y, z) {
+    const { origin, scale } = this.entry;
+    return [origin[0] + scale * x, origin[1] + scale * y, origin[2] + scale * z];
+  }
+  field(key) {
+    return this.fields.find((field) => field.key === key);
+  }
+}
+
+export function readPage() {
+  const manifest = JSON.parse(document.getElementById('certa-manifest').textContent);
+  return { title: manifest.title, version: manifest.certa, models: manifest.models.map((entry, i) => new Model(entry, i)) };
+}

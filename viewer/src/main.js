@@ -1,0 +1,281 @@
+// The page: one state, kept in the address; what it leaves open is chosen from the model; everything else follows from it.
+// For tests and pictures `certa.report()` tells what was drawn.
+import { HOME, Turntable } from './camera.js';
+import { MAPS } from './colour.js';
+import { readPage } from './data.js';
+import { element, Panel, renderLegend, renderProbe, textOf } from './panel.js';
+import { Stage } from './scene.js';
+import { hashOf, stateOf } from './state.js';
+
+const MANY_TRIANGLES = 200000;
+const THEMES = {
+  light: {
+    surface: [196, 208, 220], inside: [232, 190, 132], edge: [38, 52, 68], sharp: [40, 54, 70], segment: [26, 44, 66], point: [214, 92, 54], missing: [205, 208, 212],
+    directions: [[24, 78, 148], [176, 42, 58], [40, 110, 70]],
+  },
+  dark: {
+    surface: [138, 158, 178], inside: [206, 154, 90], edge: [12, 17, 23], sharp: [14, 19, 25], segment: [226, 233, 240], point: [255, 150, 100], missing: [84, 90, 97],
+    directions: [[150, 205, 255], [255, 158, 150], [160, 226, 170]],
+  },
+};
+
+const byId = (id) => document.getElementById(id);
+
+function fail(text) {
+  const message = byId('message');
+  message.textContent = text;
+  message.hidden = false;
+  for (const id of ['panel', 'legend']) byId(id).hidden = true;
+  document.documentElement.dataset.certa = JSON.stringify({ ready: false, message: text });
+}
+
+class App {
+  constructor(page, stage) {
+    this.page = page;
+    this.stage = stage;
+    this.state = stateOf(location.hash);
+    this.view = new Turntable(byId('stage'), () => this.moved(), (event) => this.tapped(event));
+    this.set = this.set.bind(this);
+    this.panel = new Panel(byId('panel'), this);
+    this.systemTheme = matchMedia('(prefers-color-scheme: dark)');
+    this.systemTheme.addEventListener('change', () => this.follow());
+    addEventListener('hashchange', () => this.arrive());
+    addEventListener('resize', () => this.redraw());
+    addEventListener('keydown', (event) => this.key(event));
+    stage.canvas.addEventListener('webglcontextlost', () => fail('The graphics card dropped the picture. Reload the page to draw it again.'));
+    this.arrive();
+  }
+
+  /// Takes everything from the address.
+  arrive() {
+    if (location.hash === this.written) return;
+    this.state = stateOf(location.hash);
+    this.view.reset();
+    const view = this.state.view;
+    if (view) {
+      [this.view.yaw, this.view.pitch, this.view.distance = 1] = view;
+      if (view.length === 6) this.view.target = view.slice(3);
+    }
+    this.follow();
+  }
+
+  set(changes) {
+    Object.assign(this.state, changes);
+    this.follow();
+    this.remember();
+  }
+
+  /// What is shown: the state, with what it leaves open chosen.
+  resolve() {
+    const { state } = this;
+    const model = this.page.models[Math.min(state.file, this.page.models.length - 1)];
+    const up = state.up ?? 'z';
+    const solid = model.hasSolid && !(state.show === 'facets' && model.hasSurface);
+    const field = this.chosenField(model);
+    const automaticRange = state.range === null || !field;
+    const range = automaticRange ? this.rangeOf(field) : state.range;
+    return {
+      model, solid, field, range, automaticRange, up,
+      clip: state.clip ?? (solid ? { axis: up === 'z' ? '-y' : 'z', at: 0.5 } : false),
+      map: MAPS[state.map] ? state.map : field && this.crossesZero(field) ? 'tide' : 'dusk',
+      edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES ? 'sharp' : 'all'),
+      // Where nearly every edge is a segment, drawing them says nothing.
+      segments: state.segments ?? model.counts.segments < 0.5 * (model.counts.polygons || Infinity),
+      points: state.points ?? (field?.isLabel === true && field.location === 'vertices'),
+      directions: (state.directions ?? []).map((key) => model.field(key)).filter((one) => one?.isVector && one.location === 'vertices').slice(0, 3),
+      density: state.density ?? 0.5,
+      theme: state.theme ?? (this.systemTheme.matches ? 'dark' : 'light'),
+      panel: state.panel ?? innerWidth > 640,
+      bare: state.bare ?? false,
+    };
+  }
+
+  /// The field of the state, else the first numbers of vertices, else the regions where there are several.
+  chosenField(model) {
+    if (this.state.colour === 'plain') return null;
+    const named = this.state.colour ? model.field(this.state.colour) : null;
+    if (named?.components === 1) return named;
+    const numbers = model.fields.find((one) => one.components === 1 && !one.isLabel && one.location === 'vertices');
+    const regions = model.counts.regions > 1 ? model.fields.find((one) => one.name === 'region' && one.location === 'tetrahedra') : null;
+    return numbers ?? regions ?? null;
+  }
+
+  crossesZero(field) {
+    const [low, high] = field.bulk;
+    return low < 0 && high > 0 && Math.min(-low, high) > 0.05 * Math.max(-low, high);
+  }
+
+  /// Most of the values; even around zero where they lie on both sides.
+  rangeOf(field) {
+    if (!field || field.isLabel) return [0, 1];
+    let [low, high] = field.bulk;
+    if (high - low > 0.5 * (field.max - field.min)) [low, high] = [field.min, field.max];
+    if (this.crossesZero(field)) {
+      high = Math.max(-low, high);
+      low = -high;
+    }
+    return low < high ? [low, high] : [low - (Math.abs(low) || 1) * 0.5, low + (Math.abs(low) || 1) * 0.5];
+  }
+
+  get theme() {
+    return THEMES[this.choice.theme];
+  }
+
+  /// Brings the picture and the controls in line with the state.
+  follow() {
+    const before = this.choice;
+    this.choice = this.resolve();
+    const { choice } = this;
+    document.documentElement.dataset.theme = choice.theme;
+    for (const id of ['head', 'panel']) byId(id).hidden = choice.bare;
+    document.title = this.page.models.length > 1 ? `${choice.model.name} · ${this.page.title}` : this.page.title;
+    this.view.up = choice.up;
+    this.view.radius = choice.model.radius;
+    this.stage.setTheme(this.theme);
+    const relevant = (c) => c && [c.model.index, c.solid, c.field?.key, c.map, JSON.stringify(c.clip), c.segments, c.points,
+      c.directions.map((one) => one.key).join(), c.density].join('|');
+    if (relevant(before) !== relevant(choice)) this.stage.update(choice);
+    if (choice.field && !choice.field.isLabel) this.stage.setRange(choice.field, choice.range);
+    this.renderFiles();
+    this.panel.render();
+    renderLegend(byId('legend'), choice, this.theme);
+    byId('probe').hidden = true;
+    this.redraw();
+  }
+
+  renderFiles() {
+    const { models } = this.page;
+    const nodes = models.length === 1
+      ? [element('span', { title: models[0].name }, models[0].name)]
+      : models.map((model, i) => element('button', {
+        'aria-pressed': String(model === this.choice.model), title: `${model.name} (${i + 1})`, onclick: () => this.set({ file: i }),
+      }, model.name));
+    byId('files').replaceChildren(...nodes);
+  }
+
+  redraw() {
+    if (this.waiting) return;
+    this.waiting = true;
+    requestAnimationFrame(() => {
+      this.waiting = false;
+      this.stage.draw(this.view, this.choice.edges);
+    });
+  }
+
+  moved() {
+    byId('probe').hidden = true;
+    const { yaw, pitch, distance, target } = this.view;
+    const short = target.every((x) => Math.abs(x) < 1e-4) ? (Math.abs(distance - 1) < 1e-4 ? [yaw, pitch] : [yaw, pitch, distance]) : [yaw, pitch, distance, ...target];
+    this.state.view = yaw === HOME.yaw && pitch === HOME.pitch && short.length === 2 ? null : short;
+    this.redraw();
+    this.remember();
+  }
+
+  frame() {
+    this.view.reset();
+    this.moved();
+  }
+
+  /// The clipping axis of the moment's view: what is nearer to the eye goes.
+  viewAxis() {
+    return this.view.basis.back.map((x) => Number(x.toFixed(3))).join('/');
+  }
+
+  remember() {
+    clearTimeout(this.pending);
+    this.pending = setTimeout(() => {
+      this.written = hashOf(this.state);
+      try {
+        history.replaceState(null, '', this.written || location.pathname + location.search);
+      } catch {
+        // Some browsers forbid this to local files, and limit how often: the address then stays as it was.
+      }
+    }, 150);
+  }
+
+  tapped(event) {
+    const box = this.stage.canvas.getBoundingClientRect();
+    const hit = this.stage.pick(this.view, (2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height);
+    if (!hit) {
+      byId('probe').hidden = true;
+      return;
+    }
+    renderProbe(byId('probe'), this.describe(hit), event.clientX, event.clientY);
+  }
+
+  /// Numbers as in files and messages: from 1.
+  describe({ place, vertices, weights, polygon, tetrahedron }) {
+    const { model } = this.choice;
+    const rows = [];
+    if (tetrahedron >= 0) rows.push(['tetrahedron', String(tetrahedron + 1)]);
+    if (polygon >= 0) rows.push([model.counts.triangles === model.counts.polygons ? 'triangle' : 'polygon', String(polygon + 1)]);
+    rows.push(['vertices', vertices.map((v) => v + 1).join(', ')]);
+    rows.push(['place', model.place(...place).map((x) => String(Number(x.toPrecision(6)))).join(', ')]);
+    for (const field of model.fields) {
+      if (field.components !== 1) continue;
+      if (field.location === 'tetrahedra' && tetrahedron >= 0) rows.push([field.name, textOf(field.values[tetrahedron])]);
+      if (field.location === 'polygons' && polygon >= 0) rows.push([field.name, textOf(field.values[polygon])]);
+      if (field.location === 'vertices' && !field.isLabel)
+        rows.push([field.name, textOf(vertices.reduce((sum, v, i) => sum + weights[i] * field.values[v], 0))]);
+    }
+    return rows;
+  }
+
+  key(event) {
+    if (event.ctrlKey || event.metaKey || event.altKey || /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName)) return;
+    const { choice } = this;
+    const step = event.shiftKey ? 30 : 8;
+    const turn = { ArrowLeft: [step, 0], ArrowRight: [-step, 0], ArrowUp: [0, step], ArrowDown: [0, -step] }[event.key];
+    const look = { x: [90, 0], y: [choice.up === 'z' ? 180 : 0, choice.up === 'z' ? 0 : 90], z: [0, choice.up === 'z' ? 90 : 0] }[event.key];
+    if (/^[1-9]$/.test(event.key) && Number(event.key) <= this.page.models.length) this.set({ file: Number(event.key) - 1 });
+    else if (event.key === 'n') this.set({ file: (choice.model.index + 1) % this.page.models.length });
+    else if (event.key === 'r') this.frame();
+    else if (event.key === 'd') this.set({ theme: choice.theme === 'dark' ? 'light' : 'dark' });
+    else if (event.key === 'e') this.set({ edges: { none: 'sharp', sharp: 'all', all: 'none' }[choice.edges] });
+    else if (event.key === 'h') this.set({ panel: !choice.panel });
+    else if (event.key === 'c') this.set({ clip: choice.clip ? false : { axis: this.viewAxis(), at: 0.5 } });
+    else if (event.key === '+' || event.key === '=') this.view.zoom(0.85);
+    else if (event.key === '-') this.view.zoom(1 / 0.85);
+    else if (turn) this.view.turn(...turn);
+    else if (look) {
+      [this.view.yaw, this.view.pitch] = look;
+      this.moved();
+    } else return;
+    event.preventDefault();
+  }
+
+  /// Draws now and tells what the picture holds, by value and in the root element's data-certa.
+  report() {
+    this.stage.draw(this.view, this.choice.edges);
+    const { model, solid, field, clip, edges } = this.choice;
+    const report = {
+      ready: true, file: model.index, name: model.name, solid, field: field?.key ?? null, clip, edges, range: this.choice.range,
+      counts: model.counts, hash: hashOf(this.state), ...this.stage.measure(),
+    };
+    document.documentElement.dataset.certa = JSON.stringify(report);
+    return report;
+  }
+}
+
+function start() {
+  let page;
+  try {
+    page = readPage();
+  } catch (error) {
+    fail(`This page is damaged: ${error.message}`);
+    return;
+  }
+  let stage;
+  try {
+    const probe = document.createElement('canvas').getContext('webgl2');
+    if (!probe) throw new Error('no WebGL 2');
+    probe.getExtension('WEBGL_lose_context')?.loseContext();
+    stage = new Stage(byId('stage'));
+  } catch {
+    fail('This browser does not draw 3D pictures here: WebGL 2 is switched off or missing. Turn on hardware acceleration, or open the page in a current Firefox, Chrome, Edge or Safari.');
+    return;
+  }
+  window.certa = new App(page, stage);
+}
+
+start();
