@@ -15,7 +15,6 @@ ROOT = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 ALLOWED = {
     "core": set(),
     "interval": {"core"},
-    "expression": {"core", "interval"},
     "exact": {"core"},
     "mesh": {"core", "exact"},
     "io": {"core", "exact", "mesh"},
@@ -30,7 +29,6 @@ ALLOWED = {
 LIBRARIES = {
     "CGAL/": {"exact", "delaunay", "conforming", "verify"},
     "boost/": {"exact", "delaunay", "conforming", "verify", "cli"},
-    "tao/": {"expression"},
     "CLI/": {"cli"},
     "nlohmann/": {"cli"},
 }
