@@ -90,10 +90,11 @@ constexpr Interval outward(double low, double high) {
     if (high == -infinity) high = -largest;
     return {low == -infinity ? low : below(low), high == infinity ? high : above(high)};
 }
-/// The sum of bounds, moved outward; infinite and undefined bounds are told by one test.
+/// The sum of bounds, moved outward; infinite and undefined bounds are told by one test. A sum of doubles that is 0 is
+/// exact, so that sums of squares stay at least 0.
 constexpr Interval sum_outward(double low, double high) {
     if (!is_finite(low - high)) return outward(low, high);
-    return {below(low), above(high)};
+    return {low == 0 ? low : below(low), high == 0 ? high : above(high)};
 }
 constexpr double product_bound(double a, double b) { return a == 0 || b == 0 ? 0.0 : a * b; }
 /// Infinite bounds or undefined operands.
@@ -116,7 +117,8 @@ constexpr Interval operator*(const Interval& a, const Interval& b) {
     const double p = a.lo * b.lo, q = a.lo * b.hi, r = a.hi * b.lo, s = a.hi * b.hi;
     // One test for four: a NaN or an infinity among them makes the sum NaN or infinite.
     if (!detail::is_finite((p + q) + (r + s))) return detail::product_at_infinity(a, b);
-    return {below(detail::least(detail::least(p, q), detail::least(r, s))),
+    const double low = below(detail::least(detail::least(p, q), detail::least(r, s)));
+    return {low < 0 && a.lo >= 0 && b.lo >= 0 ? 0.0 : low,
             above(detail::greatest(detail::greatest(p, q), detail::greatest(r, s)))};
 }
 

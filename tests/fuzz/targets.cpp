@@ -1,8 +1,10 @@
 // The body of every fuzzer, and of the replay of the corpus. Law: a reader refuses (IoError) or returns a document;
 // a document that its format can carry survives writing and reading.
+// The language of expressions has the same law: what is accepted is formatted and read back to the same text.
 // A set of TetGen's mesh files is one input: .node, .ele, .face, .edge, separated by lines "%%".
 #include "targets.h"
 
+#include <certa/implicit.h>
 #include <certa/io.h>
 
 #include <array>
@@ -16,8 +18,8 @@
 namespace certa::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 10> names{"off",   "obj",      "ply",   "stl", "poly",
-                                                 "smesh", "node_set", "medit", "vtu", "msh"};
+constexpr std::array<std::string_view, 11> names{"off",      "obj",   "ply", "stl", "poly",      "smesh",
+                                                 "node_set", "medit", "vtu", "msh", "expression"};
 
 constexpr std::string_view separator = "%%\n";
 
@@ -64,11 +66,29 @@ std::optional<std::string> format(std::string_view name, const MeshDocument& doc
     std::abort();
 }
 
+void run_expression(std::string_view bytes) {
+    std::optional<Expression> function;
+    try {
+        function = parse_expression(bytes);
+    } catch (const ExpressionError&) {
+        return;
+    }
+    const std::string first = format_expression(*function);
+    try {
+        const std::string second = format_expression(parse_expression(first));
+        if (second != first) fail("what was written changes when it is read", first, second);
+    } catch (const ExpressionError& error) {
+        fail("what was written is refused", first, error.what());
+    }
+    evaluate(*function, {0.3, -0.7, 1.1});
+}
+
 }  // namespace
 
 std::span<const std::string_view> target_names() { return names; }
 
 void run_target(std::string_view name, std::string_view bytes) {
+    if (name == "expression") return run_expression(bytes);
     const std::optional<MeshDocument> document = parse(name, bytes);
     if (!document) return;
     const std::optional<std::string> first = format(name, *document);
