@@ -4,6 +4,7 @@
 #include <certa/view.h>
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <set>
@@ -73,6 +74,12 @@ std::vector<ViewModel> read_models(Session& session, const ViewArguments& argume
     return models;
 }
 
+void write_page(const std::string& path, const std::string& page) {
+    if (path != "-") return write_text(path, page);
+    if (std::fwrite(page.data(), 1, page.size(), stdout) != page.size() || std::fflush(stdout) != 0)
+        throw IoError("standard output", 0, "cannot be written");
+}
+
 ExitCode run_view(Session& session, const ViewArguments& arguments) {
     if (!arguments.output.empty()) require_page_name(session, arguments.output);
     const std::vector<ViewModel> models = read_models(session, arguments);
@@ -87,7 +94,7 @@ ExitCode run_view(Session& session, const ViewArguments& arguments) {
         return ExitCode::done;
     }
     if (interrupt_flag()) return ExitCode::interrupted;
-    session.timed("write", [&] { write_text(arguments.output, page); });
+    session.timed("write", [&] { write_page(arguments.output, page); });
     session.report()["output"]["path"] = arguments.output;
     session.report()["output"]["format"] = "html";
     session.say("wrote " + (arguments.output == "-" ? std::string("standard output") : arguments.output));

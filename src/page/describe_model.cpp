@@ -257,8 +257,10 @@ std::string describe_counts(const MeshDocument& document) {
     const auto facets = label_count(document, "facet", Location::polygons);
     if (facets || complex.facet_count() != complex.polygon_count())
         counts.set("facets", json_number(facets ? *facets : std::uint64_t{complex.facet_count()}));
-    if (const auto regions = label_count(document, "region", Location::tetrahedra))
-        counts.set("regions", json_number(*regions));
+    // Formats with one number per tetrahedron call the region a marker.
+    auto regions = label_count(document, "region", Location::tetrahedra);
+    if (!regions) regions = label_count(document, "marker", Location::tetrahedra);
+    if (regions) counts.set("regions", json_number(*regions));
     for (const Field& field : document.fields) {
         const Integers* kinds = std::get_if<Integers>(&field.values);
         if (kinds == nullptr || field.name != "source_kind" || field.location != Location::vertices) continue;

@@ -2,6 +2,7 @@
 // Positions are single precision in a box around the origin: input = origin + scale * position. Everything else has
 // the smallest type that holds its numbers exactly.
 
+const FEW_FACETS = 500;
 const TYPES = {
   u8: Uint8Array, u16: Uint16Array, u32: Uint32Array, i32: Int32Array,
   f32: Float32Array, f64: Float64Array, i64: BigInt64Array,
@@ -85,6 +86,18 @@ export class Model {
       return new Field(field, key);
     });
     this.counts = { vertices: entry.positions.count / 3, ...entry.counts };
+    this.addFacets();
+  }
+  /// Facets of an input have no field: their numbers, where few enough to be told apart.
+  addFacets() {
+    const { polygons, triangles, facets = polygons, tetrahedra } = this.counts;
+    if (facets < 2 || tetrahedra > 0 || (polygons === triangles && facets > FEW_FACETS)) return;
+    if (this.fields.some((field) => field.name === 'facet' && field.location === 'polygons')) return;
+    const field = new Field({ name: 'facet', location: 'polygons', components: 1, kind: 'label', min: 1, max: facets }, 'facet');
+    const offsets = this.entry.facets ? this.array('facets') : null;
+    field.decoded = new Uint32Array(polygons);
+    for (let f = 0; f < facets; ++f) field.decoded.fill(f + 1, offsets ? offsets[f] : f, offsets ? offsets[f + 1] : f + 1);
+    this.fields.push(field);
   }
   array(name) {
     this.arrays ??= {};

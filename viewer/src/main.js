@@ -40,7 +40,7 @@ class App {
     this.systemTheme = matchMedia('(prefers-color-scheme: dark)');
     this.systemTheme.addEventListener('change', () => this.follow());
     addEventListener('hashchange', () => this.arrive());
-    addEventListener('resize', () => this.redraw());
+    addEventListener('resize', () => this.follow());
     addEventListener('keydown', (event) => this.key(event));
     stage.canvas.addEventListener('webglcontextlost', () => fail('The graphics card dropped the picture. Reload the page to draw it again.'));
     this.arrive();
@@ -74,15 +74,15 @@ class App {
     const field = this.chosenField(model);
     const automaticRange = state.range === null || !field;
     const range = automaticRange ? this.rangeOf(field) : state.range;
+    const directions = (state.directions ?? []).map((key) => model.field(key)).filter((one) => one?.isVector && one.location === 'vertices').slice(0, 3);
     return {
-      model, solid, field, range, automaticRange, up,
+      directions, model, solid, field, range, automaticRange, up,
       clip: state.clip ?? (solid ? { axis: up === 'z' ? '-y' : 'z', at: 0.5 } : false),
       map: MAPS[state.map] ? state.map : field && this.crossesZero(field) ? 'tide' : 'dusk',
-      edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES ? 'sharp' : 'all'),
+      edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES || directions.length > 0 ? 'sharp' : 'all'),
       // Where nearly every edge is a segment, drawing them says nothing.
       segments: state.segments ?? model.counts.segments < 0.5 * (model.counts.polygons || Infinity),
       points: state.points ?? (field?.isLabel === true && field.location === 'vertices'),
-      directions: (state.directions ?? []).map((key) => model.field(key)).filter((one) => one?.isVector && one.location === 'vertices').slice(0, 3),
       density: state.density ?? 0.5,
       theme: state.theme ?? (this.systemTheme.matches ? 'dark' : 'light'),
       panel: state.panel ?? innerWidth > 640,
@@ -96,7 +96,8 @@ class App {
     const named = this.state.colour ? model.field(this.state.colour) : null;
     if (named?.components === 1) return named;
     const numbers = model.fields.find((one) => one.components === 1 && !one.isLabel && one.location === 'vertices');
-    const regions = model.counts.regions > 1 ? model.fields.find((one) => one.name === 'region' && one.location === 'tetrahedra') : null;
+    const labels = model.fields.filter((one) => one.isLabel && one.location === 'tetrahedra');
+    const regions = model.counts.regions > 1 ? labels.find((one) => one.name === 'region') ?? labels.find((one) => one.name === 'marker') : null;
     return numbers ?? regions ?? null;
   }
 
@@ -123,6 +124,14 @@ class App {
 
   /// Brings the picture and the controls in line with the state.
   follow() {
+    try {
+      this.bringInLine();
+    } catch (error) {
+      fail(`This page cannot be shown: ${error.message}`);
+    }
+  }
+
+  bringInLine() {
     const before = this.choice;
     this.choice = this.resolve();
     const { choice } = this;
@@ -131,6 +140,7 @@ class App {
     document.title = this.page.models.length > 1 ? `${choice.model.name} · ${this.page.title}` : this.page.title;
     this.view.up = choice.up;
     this.view.radius = choice.model.radius;
+    this.view.inset = choice.panel && !choice.bare && innerWidth > 640 ? 264 : 0;
     this.stage.setTheme(this.theme);
     const relevant = (c) => c && [c.model.index, c.solid, c.field?.key, c.map, JSON.stringify(c.clip), c.segments, c.points,
       c.directions.map((one) => one.key).join(), c.density].join('|');

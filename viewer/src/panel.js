@@ -91,6 +91,8 @@ export class Panel {
       this.colourSection(choice, set),
       this.directionSection(choice, set),
       this.clipSection(choice, set),
+      element('p', { class: 'keys' }, 'Drag turns, right drag moves, wheel zooms, a click names the element. Keys: r frame, e edges, c clip, d dark, h hide',
+        this.app.page.models.length > 1 ? ', n next file.' : '.'),
     ].filter(Boolean);
   }
 
@@ -185,7 +187,7 @@ function ticksOf(low, high) {
   const ticks = [low];
   for (let i = Math.ceil(low / step); i * step < high; ++i) {
     const value = Number((i * step).toPrecision(12));
-    if (value - low > 0.17 * span && high - value > 0.17 * span) ticks.push(value);
+    if (value - low > 0.24 * span && high - value > 0.24 * span) ticks.push(value);
   }
   return [...ticks, high];
 }
@@ -208,7 +210,7 @@ function labelLegend(field) {
   const items = [...field.categories.subarray(0, most)].map((value, i) => {
     const swatch = element('i');
     swatch.style.background = css(labelColour(i));
-    return element('li', {}, swatch, names?.[value] ?? (value === 0 && field.zeroMeansNone ? 'none' : String(value)));
+    return element('li', {}, swatch, names?.[value] ?? (value === 0 && ['facet', 'segment', 'marker'].includes(field.name) ? 'none' : String(value)));
   });
   const more = field.categories.length - items.length;
   return [element('ul', { class: 'labels' }, ...items), ...(more > 0 ? [element('p', { class: 'beyond' }, `and ${grouped(more)} more`)] : [])];

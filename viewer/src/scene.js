@@ -56,14 +56,14 @@ export class Stage {
     this.faces = new Mesh(new BufferGeometry(), shaderMaterial(FACE_VERTEX, FACE_FRAGMENT, own({
       surface: { value: new Vector3() }, inside: { value: new Vector3() }, edges: { value: 2 },
     }), { side: DoubleSide }));
-    const lines = (width, vanish, bias) => new Mesh(lineGeometry(), shaderMaterial(LINE_VERTEX, LINE_FRAGMENT, own({
-      line: { value: new Vector3() }, width: { value: width }, vanish: { value: vanish }, bias: { value: bias }, opacity: { value: 1 },
+    const lines = () => new Mesh(lineGeometry(), shaderMaterial(LINE_VERTEX, LINE_FRAGMENT, own({
+      line: { value: new Vector3() }, width: { value: 1 }, vanish: { value: 0 }, lift: { value: 0 }, opacity: { value: 1 },
     }), { transparent: true, side: DoubleSide }));
-    this.sharp = lines(1.3, 0, 3e-4);
-    this.segments = lines(1.6, 5, 5e-4);
-    this.directions = [lines(1.5, 3, 1.2e-3), lines(1.5, 3, 1.2e-3), lines(1.5, 3, 1.2e-3)];
+    this.sharp = lines();
+    this.segments = lines();
+    this.directions = [lines(), lines(), lines()];
     this.points = new Points(new BufferGeometry(), shaderMaterial(POINT_VERTEX, POINT_FRAGMENT, own({
-      line: { value: new Vector3() }, size: { value: 6 }, bias: { value: 8e-4 },
+      line: { value: new Vector3() }, size: { value: 6 }, lift: { value: 0 },
     }), { transparent: true }));
     for (const object of [this.faces, this.sharp, this.segments, ...this.directions, this.points]) {
       object.frustumCulled = false;
@@ -363,11 +363,18 @@ export class Stage {
     const pixels = this.prepare(this.choice.model).edge / view.unitsPerPixel;
     this.faces.material.uniforms.edges.value = edges === 'all' ? 0.45 * Math.min(1, Math.max(0, (pixels - 2) / 8)) : 0;
     this.sharp.visible = edges !== 'none' && this.sharp.geometry.instanceCount > 0;
-    this.sharp.material.uniforms.width.value = 1.3 * ratio;
-    this.segments.material.uniforms.width.value = 1.6 * ratio;
-    this.segments.material.uniforms.vanish.value = 5 * ratio;
-    for (const mesh of this.directions) mesh.material.uniforms.width.value = 1.6 * ratio;
+    // A line comes forward by its width, a point by its radius; directions also over the bend of the surface under them.
+    const perPixel = view.unitsPerPixel / view.length;
+    const setLine = (mesh, thick, vanish, over) => {
+      mesh.material.uniforms.width.value = thick * ratio;
+      mesh.material.uniforms.vanish.value = vanish * ratio;
+      mesh.material.uniforms.lift.value = 1.5 * thick * perPixel + over;
+    };
+    setLine(this.sharp, 1.3, 0, 0);
+    setLine(this.segments, 1.6, 5, 0.2 * perPixel);
+    for (const mesh of this.directions) setLine(mesh, 1.6, 3, (0.006 * view.radius) / view.length);
     this.points.material.uniforms.size.value = 7 * ratio;
+    this.points.material.uniforms.lift.value = 5 * perPixel;
     view.apply(width, height);
     this.renderer.render(this.scene, view.camera);
   }

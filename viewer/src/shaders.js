@@ -85,14 +85,14 @@ in vec3 end;
 in float value;
 uniform vec2 viewport;
 uniform float width;
-uniform float bias;
+uniform float lift;    // share of the distance by which it comes nearer to the eye, so that faces do not cover it
 uniform float vanish;
 out float vValue;
 out float vAcross;
 out float vAlpha;
 void main() {
-  vec4 a = projectionMatrix * modelViewMatrix * vec4(start, 1.0);
-  vec4 b = projectionMatrix * modelViewMatrix * vec4(end, 1.0);
+  vec4 a = projectionMatrix * vec4((modelViewMatrix * vec4(start, 1.0)).xyz * (1.0 - lift), 1.0);
+  vec4 b = projectionMatrix * vec4((modelViewMatrix * vec4(end, 1.0)).xyz * (1.0 - lift), 1.0);
   float at = position.x;
   vec2 along = (b.xy / b.w - a.xy / a.w) * viewport * 0.5;
   float size = length(along);
@@ -101,7 +101,6 @@ void main() {
   float reach = width * 0.5 + 0.75;
   vec2 shift = vec2(-along.y, along.x) * position.y * reach + along * (at * 2.0 - 1.0) * 0.35 * width;
   place.xy += shift / viewport * 2.0 * place.w;
-  place.z -= bias * place.w;
   vValue = value;
   vAcross = position.y * reach;
   vAlpha = vanish > 0.0 ? smoothstep(0.25, 1.0, size / vanish) : 1.0;
@@ -128,12 +127,11 @@ void main() {
 export const POINT_VERTEX = `
 in float value;
 uniform float size;
-uniform float bias;
+uniform float lift;
 out float vValue;
 void main() {
   vValue = value;
-  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-  gl_Position.z -= bias * gl_Position.w;
+  gl_Position = projectionMatrix * vec4((modelViewMatrix * vec4(position, 1.0)).xyz * (1.0 - lift), 1.0);
   gl_PointSize = size;
 }
 `;

@@ -1,0 +1,364 @@
+#!/usr/bin/python3
+"""Pages as they look in headless Chromium: what is drawn is counted in elements and pixels and compared with the input.
+
+Run by ctest as `browser_test.py CERTA`; skips with a message where there is no Chromium.
+"""
+
+import itertools
+import math
+import os
+import subprocess
+import sys
+import tempfile
+import unittest
+
+sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools"))
+from browser import Browser, find_chromium  # noqa: E402
+
+CERTA = sys.argv.pop(1) if len(sys.argv) > 1 else "certa"
+
+PLATE_RINGS = """16 3 0 0
+1 0 0 0
+2 10 0 0
+3 10 10 0
+4 0 10 0
+5 1 1 0
+6 9 1 0
+7 9 9 0
+8 1 9 0
+9 3 3 0
+10 7 3 0
+11 7 7 0
+12 3 7 0
+13 4 4 0
+14 6 4 0
+15 6 6 0
+16 4 6 0
+1 0
+%d %d
+4 1 2 3 4
+%s0
+0
+"""
+
+
+def torus(rings, sides):
+    """A torus (radii 1 and 0.4) as PLY with its Gaussian curvature and both principal directions."""
+    vertices, faces = [], []
+    for i, j in itertools.product(range(rings), range(sides)):
+        u, v = 2 * math.pi * i / rings, 2 * math.pi * j / sides
+        cu, su, cv, sv = math.cos(u), math.sin(u), math.cos(v), math.sin(v)
+        vertices.append(((1 + 0.4 * cv) * cu, (1 + 0.4 * cv) * su, 0.4 * sv, cv / (1 + 0.4 * cv) / 0.4,
+                         -su, cu, 0, -sv * cu, -sv * su, cv))
+        a, b = i * sides + j, (i + 1) % rings * sides + j
+        c, d = (i + 1) % rings * sides + (j + 1) % sides, i * sides + (j + 1) % sides
+        faces += [(a, b, c), (a, c, d)]
+    names = "x y z gaussian dir_min_x dir_min_y dir_min_z dir_max_x dir_max_y dir_max_z".split()
+    return "\n".join(["ply", "format ascii 1.0", f"element vertex {len(vertices)}", *(f"property double {n}" for n in names),
+                      f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header",
+                      *(" ".join(map(repr, v)) for v in vertices), *("3 %d %d %d" % f for f in faces)]) + "\n"
+
+
+class Block:
+    """Cubes of an n x n x n grid, six tetrahedra each (Kuhn's), in two regions; the boundary is its triangles."""
+
+    def __init__(self, n):
+        index = lambda p: (p[0] * (n + 1) + p[1]) * (n + 1) + p[2]
+        self.points = [(x * 1.0, y * 1.0, z * 1.0) for x, y, z in itertools.product(range(n + 1), repeat=3)]
+        self.tetrahedra, self.regions = [], []
+        for cube in itertools.product(range(n), repeat=3):
+            for order in itertools.permutations(range(3)):
+                place, corners = list(cube), [index(cube)]
+                for axis in order:
+                    place[axis] += 1
+                    corners.append(index(place))
+                even = order in ((0, 1, 2), (1, 2, 0), (2, 0, 1))
+                self.tetrahedra.append(tuple(corners) if even else (corners[0], corners[2], corners[1], corners[3]))
+                self.regions.append(1 if cube[2] < n // 2 else 2)
+        self.triangles = self.boundary(range(len(self.tetrahedra)))
+
+    @staticmethod
+    def faces(t):
+        a, b, c, d = t
+        return (b, c, d), (a, d, c), (a, b, d), (a, c, b)
+
+    def boundary(self, kept):
+        """Faces of exactly one of these tetrahedra."""
+        found = {}
+        for t in kept:
+            for face in self.faces(self.tetrahedra[t]):
+                found.setdefault(tuple(sorted(face)), []).append(face)
+        return [faces[0] for faces in found.values() if len(faces) == 1]
+
+    def centre(self, t, axis):
+        return sum(self.points[v][axis] for v in self.tetrahedra[t]) / 4
+
+    def text(self):
+        lines = ["MeshVersionFormatted 2", "Dimension 3", "Vertices", str(len(self.points))]
+        lines += ["%r %r %r 0" % p for p in self.points]
+        lines += ["Triangles", str(len(self.triangles))] + ["%d %d %d 1" % tuple(v + 1 for v in t) for t in self.triangles]
+        lines += ["Tetrahedra", str(len(self.tetrahedra))]
+        lines += ["%d %d %d %d " % tuple(v + 1 for v in t) + str(r) for t, r in zip(self.tetrahedra, self.regions)]
+        return "\n".join(lines + ["End"]) + "\n"
+
+
+class PageTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.folder = folder.name
+        cls.block = Block(4)
+        cls.write("torus.ply", torus(48, 24))
+        cls.write("block.mesh", cls.block.text())
+        cls.page = cls.make("page.html", "torus.ply", "block.mesh")
+        cls.browser = Browser(1000, 700)
+        cls.addClassCleanup(cls.browser.__exit__)
+
+    @classmethod
+    def write(cls, name, text):
+        with open(os.path.join(cls.folder, name), "w", encoding="utf-8") as file:
+            file.write(text)
+
+    @classmethod
+    def make(cls, name, *inputs):
+        done = subprocess.run([CERTA, "view", *inputs, "-o", name], capture_output=True, cwd=cls.folder, timeout=100)
+        if done.returncode != 0:
+            raise RuntimeError(done.stderr.decode())
+        return os.path.join(cls.folder, name)
+
+    def open(self, state="", page=None):
+        self.browser.open(page or self.page, state)
+        return self.browser.report()
+
+    def tearDown(self):
+        errors, self.browser.errors = self.browser.errors, []
+        self.assertEqual(errors, [])
+
+    def do(self, expression):
+        """Runs something in the page and reports."""
+        self.browser.evaluate(expression)
+        self.browser.settle()
+        return self.browser.report()
+
+    def press(self, text):
+        """The button with this text, as a user would."""
+        found = self.browser.evaluate(
+            f"(() => {{ const node = [...document.querySelectorAll('button')].find(b => b.textContent === {text!r});"
+            "if (!node) return null; node.scrollIntoView({block: 'nearest'}); const box = node.getBoundingClientRect();"
+            "return [box.left + box.width / 2, box.top + box.height / 2]; })()")
+        self.assertIsNotNone(found, f"no button {text}")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.mouse(kind, *found, button="left", buttons=1, clickCount=1)
+        self.browser.settle()
+        return self.browser.report()
+
+    def test_a_surface_fills_the_frame_with_its_colours(self):
+        report = self.open()
+        self.assertEqual(report["triangles"], 48 * 24 * 2)
+        self.assertEqual(report["field"], "gaussian")
+        self.assertEqual(report["counts"]["vertices"], 48 * 24)
+        area = report["width"] * report["height"]
+        self.assertGreater(report["covered"], 0.1 * area)
+        self.assertLess(report["covered"], 0.6 * area)
+        self.assertGreater(report["colours"], 60)
+        plain = self.open("color=plain&edges=none")
+        self.assertLess(plain["colours"], 40)  # shades of one colour
+        self.assertLess(max(plain["mean"]) - min(plain["mean"]), 40)
+
+    def test_the_range_moves_the_colours(self):
+        # Gaussian curvature lies in [-4.2, 1.8]: above the range all is the map's red end, below it the blue one.
+        red = self.open("color=gaussian&map=tide&range=-99,-50&edges=none")["mean"]
+        blue = self.open("color=gaussian&map=tide&range=50,99&edges=none")["mean"]
+        self.assertGreater(red[0], red[2] + 30)
+        self.assertGreater(blue[2], blue[0] + 30)
+        # By hand: numbers typed into the two boxes.
+        report = self.open("color=gaussian&edges=none&map=tide")
+        for label, value in (("Highest value", 99), ("Lowest value", 50)):
+            report = self.do(f"(() => {{ const box = document.querySelector('[aria-label=\"{label}\"]'); box.value = '{value}';"
+                             "box.dispatchEvent(new Event('change')); })()")
+        self.assertEqual(report["range"], [50, 99])
+        self.assertLess(max(abs(a - b) for a, b in zip(report["mean"], blue)), 12)
+        legend = self.browser.evaluate("document.getElementById('legend').innerText")
+        self.assertIn("gaussian", legend)
+        self.assertIn("50", legend)
+
+    def test_directions_are_lines(self):
+        none = self.open("color=plain&edges=none")
+        both = self.open("color=plain&edges=none&directions=dir_min,dir_max")
+        self.assertEqual(none["directions"], 0)
+        self.assertGreater(both["directions"], 200)
+        self.assertEqual(both["directions"] % 2, 0)
+        self.assertGreater(both["colours"], none["colours"] + 20)
+
+    def test_files_are_switched_by_button_and_by_key(self):
+        self.assertEqual(self.open()["name"], "torus.ply")
+        report = self.press("block.mesh")
+        self.assertEqual(report["name"], "block.mesh")
+        self.assertTrue(report["solid"])
+        self.assertEqual(report["counts"]["tetrahedra"], 384)
+        self.browser.key("1")
+        self.browser.settle()
+        self.assertEqual(self.browser.report()["name"], "torus.ply")
+        self.assertIn("torus.ply", self.browser.evaluate("document.title"))
+
+    def test_clipping_keeps_whole_tetrahedra(self):
+        whole = self.open("file=2&clip=off&color=plain")
+        self.assertEqual(whole["tetrahedra"], 384)
+        self.assertEqual(whole["triangles"], len(self.block.triangles))
+        for axis, sign in itertools.product("xyz", (1, -1)):
+            for at in (0.2, 0.53):
+                with self.subTest(axis=axis, sign=sign, at=at):
+                    state = f"file=2&color=plain&clip={'-' if sign < 0 else ''}{axis},{at}"
+                    report = self.do(f"location.hash = '{state}'; new Promise(done => setTimeout(done, 30))")
+                    limit = (2 * at - 1) * 2 * 1.0001
+                    kept = [t for t in range(384) if sign * (self.block.centre(t, "xyz".index(axis)) - 2) <= limit]
+                    self.assertEqual(report["tetrahedra"], len(kept))
+                    self.assertEqual(report["triangles"], len(self.block.boundary(kept)))
+                    self.assertGreater(report["covered"], 2000)
+        half = self.open("file=2&color=plain&clip=-y,0.5&edges=none")
+        # The cut shows the inside in another, warmer colour.
+        self.assertGreater(half["mean"][0] - half["mean"][2], whole["mean"][0] - whole["mean"][2] + 10)
+
+    def test_the_slider_clips(self):
+        self.open("file=2&color=plain")
+        self.press("x")
+        counts = [self.do("(() => { const slider = document.querySelector('[aria-label=\"Place of the clipping plane\"]');"
+                          f"slider.value = {at}; slider.dispatchEvent(new Event('input')); }})()")["tetrahedra"] for at in (0.1, 0.6, 1)]
+        self.assertEqual(counts, sorted(counts))
+        self.assertLess(counts[0], counts[1])
+        self.assertEqual(counts[2], 384)
+        self.assertEqual(self.press("off")["clip"], False)
+
+    def test_regions_have_colours_and_a_legend(self):
+        report = self.open("file=2&clip=off&edges=none&view=0,0")
+        self.assertEqual(report["field"], "marker")
+        legend = self.browser.evaluate("document.getElementById('legend').innerText.split(/\\s+/)")
+        self.assertIn("1", legend)
+        self.assertIn("2", legend)
+        upper, lower = (self.browser.evaluate(
+            "(() => { certa.report(); const gl = document.getElementById('stage').getContext('webgl2');"
+            "certa.stage.draw(certa.view, 'none'); const pixel = new Uint8Array(4);"
+            f"gl.readPixels(368, {y}, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); return [...pixel]; }})()") for y in (450, 250))
+        self.assertGreater(upper[0], upper[2])  # region 2 is sand, region 1 blue
+        self.assertGreater(lower[2], lower[0])
+
+    def test_surfaces_are_clipped_by_whole_polygons(self):
+        whole = self.open("clip=off")
+        half = self.open("clip=x,0.5")
+        self.assertEqual(whole["triangles"], 2304)
+        self.assertLess(abs(half["triangles"] - 1152), 60)
+
+    def test_the_address_keeps_the_state(self):
+        self.open("file=2")
+        self.press("light" if self.browser.evaluate("document.documentElement.dataset.theme") == "dark" else "dark")
+        self.press("facets")
+        for kind, x, y in (("mousePressed", 300, 300), ("mouseMoved", 380, 330), ("mouseReleased", 380, 330)):
+            self.browser.mouse(kind, x, y, button="left", buttons=1, clickCount=1)
+        self.browser.evaluate("new Promise(done => setTimeout(done, 250))")
+        before = self.browser.report()
+        address = self.browser.evaluate("location.hash")
+        self.assertEqual(address, before["hash"])
+        for part in ("file=2", "show=facets", "theme=", "view="):
+            self.assertIn(part, address)
+        after = self.open(address)
+        self.assertEqual(before, after)
+        self.assertNotEqual(before["covered"], self.open("file=2&show=facets")["covered"])
+
+    def test_nonsense_in_the_address_is_ignored(self):
+        plain, last = self.open(), self.open("file=2")
+        odd = self.open("file=99&color=nothing&range=2,1&clip=q,7&view=a,b&theme=pink&%E0%A4%A&directions=gaussian&map=x")
+        self.assertEqual(odd["triangles"], last["triangles"])
+        self.assertEqual(self.open("range=2,1&clip=q,7&view=a,b&theme=pink&color=%E0%A4%A&map=x")["mean"], plain["mean"])
+
+    def test_a_click_names_the_element(self):
+        self.open("file=2&clip=off&view=0,0")
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.mouse(kind, 368, 350, button="left", buttons=1, clickCount=1)
+        self.browser.settle()
+        rows = self.browser.evaluate("Object.fromEntries([...document.querySelectorAll('#probe dt')].map(n => [n.textContent, n.nextSibling.textContent]))")
+        tetrahedron = self.block.tetrahedra[int(rows["tetrahedron"]) - 1]
+        corners = {int(v) - 1 for v in rows["vertices"].split(",")}
+        self.assertLessEqual(corners, set(tetrahedron))
+        self.assertEqual(corners, set(self.block.triangles[int(rows["triangle"]) - 1]))
+        self.assertAlmostEqual(float(rows["place"].split(",")[1].replace("−", "-")), 0, delta=1e-5)  # the front is y = 0
+
+    def test_facets_with_holes_and_islands(self):
+        """Seen straight on, pixels are areas: rings count only where a hole point says so."""
+        rings = ["4 5 6 7 8\n", "4 9 10 11 12\n", "4 13 14 15 16\n"]
+        cases = [([], [], 100), (rings, [], 100), (rings, ["1 2 2 0\n"], 100 - 64 + 16), (rings, ["1 2 2 0\n", "2 5 5 0\n"], 100 - 64 + 16 - 4),
+                 (rings, ["1 3.5 3.5 0\n"], 100 - 16 + 4), (rings[:2], ["1 5 5 0\n"], 84)]
+        covered = []
+        for inner, holes, _ in cases:
+            self.write("plate.poly", PLATE_RINGS % (1 + len(inner), len(holes), "".join(inner) + "".join(holes)))
+            page = self.make("plate.html", "plate.poly")
+            covered.append(self.open("view=0,90&edges=none&panel=0", page)["covered"])
+        for (_, _, area), pixels in zip(cases, covered):
+            self.assertAlmostEqual(pixels / covered[0], area / 100, delta=0.01)
+
+    def test_concave_and_large_polygons(self):
+        self.write("l.off", "OFF\n6 1 0\n0 0 0\n4 0 0\n4 2 0\n2 2 0\n2 4 0\n0 4 0\n6 0 1 2 3 4 5\n")
+        self.write("square.off", "OFF\n4 1 0\n0 0 0\n4 0 0\n4 4 0\n0 4 0\n4 0 1 2 3\n")
+        self.write("dart.off", "OFF\n5 1 0\n0 0 0\n4 0 0\n1 1 0\n0 4 0\n4 4 0\n4 0 1 2 3\n")
+        areas = [self.open("view=0,90&edges=none&panel=0&color=plain", self.make("flat.html", name))["covered"] for name in ("square.off", "l.off", "dart.off")]
+        self.assertAlmostEqual(areas[1] / areas[0], 12 / 16, delta=0.01)
+        self.assertAlmostEqual(areas[2] / areas[0], 4 / 16, delta=0.01)
+
+    def test_degenerate_documents_do_not_break_the_page(self):
+        cases = {"point.off": "OFF\n1 0 0\n7 7 7\n", "flat.off": "OFF\n4 2 0\n0 0 0\n1 0 0\n2 0 0\n1 0 0\n3 0 1 2\n4 0 0 0 0\n",
+                 "segments.obj": "v 0 0 0\nv 1 1 1\nv 2 0 1\nl 1 2 3\n"}
+        for name, text in cases.items():
+            with self.subTest(name=name):
+                self.write(name, text)
+                report = self.open("points=1", self.make("odd.html", name))
+                self.assertGreater(report["points"], 0)
+                self.assertGreater(report["covered"], 10)
+
+    def test_names_are_shown_as_they_are(self):
+        name = "<b>&'\" é.off"
+        self.write(name, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")
+        self.open(page=self.make("named.html", name))
+        self.assertEqual(self.browser.evaluate("document.getElementById('files').innerText"), name)
+
+    def test_a_damaged_page_says_so(self):
+        with open(self.page, encoding="utf-8") as file:
+            text = file.read()
+        at = text.index('id="certa-array-0">') + 40
+        self.write("damaged.html", text[:at] + text[at + 8:])
+        self.browser.open(os.path.join(self.folder, "damaged.html"))
+        message = self.browser.evaluate("document.getElementById('message').innerText")
+        self.assertIn("damaged", message)
+
+    def test_without_webgl_there_is_a_plain_message(self):
+        with Browser(800, 600, webgl=False) as browser:
+            browser.open(self.page)
+            message = browser.evaluate("document.getElementById('message').innerText")
+            self.assertIn("WebGL", message)
+            self.assertFalse(browser.evaluate("document.getElementById('message').hidden"))
+
+    def test_small_screens_and_touch(self):
+        self.browser.resize(390, 780, 2)
+        try:
+            report = self.open()
+            self.assertEqual((report["width"], report["height"]), (780, 1560))
+            self.assertGreater(report["covered"], 50000)
+            before = self.browser.evaluate("[certa.view.distance, certa.view.yaw]")
+            touch = lambda kind, *points: self.browser.call("Input.dispatchTouchEvent", {
+                "type": kind, "touchPoints": [{"x": x, "y": y, "id": i} for i, (x, y) in enumerate(points)]})
+            touch("touchStart", (150, 400))
+            touch("touchMove", (200, 400))
+            touch("touchEnd")
+            self.assertNotEqual(self.browser.evaluate("certa.view.yaw"), before[1])
+            touch("touchStart", (150, 400), (200, 400))
+            touch("touchMove", (100, 400), (250, 400))
+            touch("touchEnd")
+            self.assertLess(self.browser.evaluate("certa.view.distance"), before[0] * 0.7)
+        finally:
+            self.browser.resize(1000, 700)
+
+
+if __name__ == "__main__":
+    if find_chromium() is None:
+        print("certa-test-skipped: no Chromium here (Debian: apt-get install --no-install-recommends chromium)")
+        sys.exit(0)
+    unittest.main()
