@@ -27,7 +27,7 @@ struct ViewOptions {
 /// Errors:     InputError: empty_input without a model or for a model without points, non_finite_coordinate,
 ///             index_out_of_range for corners or fields that do not fit.
 /// Guarantee:  the same bytes for the same models; the page opens without a network (tested in Chromium).
-/// Cost:       linear; 40 bytes per vertex of a triangle mesh, 11 per number of a field, 22 per tetrahedron.
+/// Cost:       linear; about 48 bytes per vertex of a triangle mesh, 22 per tetrahedron, at most 11 per number of a field.
 std::string format_view(std::span<const ViewModel> models, const ViewOptions& options = {});
 
 }  // namespace certa

@@ -12,7 +12,7 @@ export class Turntable {
     this.onTap = onTap;
     this.camera = new PerspectiveCamera(FIELD_OF_VIEW, 1, 0.01, 100);
     this.up = 'z';
-    this.inset = 0;  // CSS pixels at the right that the controls cover
+    this.inset = [0, 0];  // CSS pixels at the right and at the bottom that the controls cover
     this.radius = 1;
     this.reset();
     this.pointers = new Map();
@@ -45,15 +45,15 @@ export class Turntable {
     const height = this.element.clientHeight || 1;
     return (2 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * this.length) / height;
   }
-  /// Distance of the eye at which the model's ball fills the smaller side.
+  /// Distance of the eye; at distance 1 the model's ball fills what is free.
   get length() {
-    const aspect = Math.min(1, this.fit);
-    const half = Math.atan(Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * aspect);
+    const half = Math.atan(Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * this.fit);
     return (this.distance * this.radius) / Math.sin(half);
   }
-  /// Width over height of what the controls leave free.
+  /// The smaller side of what the controls leave free, over the height.
   get fit() {
-    return (this.element.clientWidth - this.inset) / (this.element.clientHeight || 1);
+    const width = this.element.clientWidth, height = this.element.clientHeight || 1;
+    return Math.max(0.1, Math.min(width - this.inset[0], height - this.inset[1]) / height);
   }
   apply(width, height) {
     this.camera.aspect = width / height;
@@ -68,7 +68,8 @@ export class Turntable {
     this.camera.near = Math.max(length - reach, length * 0.002);
     this.camera.far = length + reach;
     this.camera.updateProjectionMatrix();
-    this.camera.projectionMatrix.elements[8] += this.inset / width;
+    this.camera.projectionMatrix.elements[8] += this.inset[0] / width;
+    this.camera.projectionMatrix.elements[9] -= this.inset[1] / height;
     this.camera.projectionMatrixInverse.copy(this.camera.projectionMatrix).invert();
     this.camera.updateMatrixWorld(true);
   }
@@ -93,7 +94,7 @@ export class Turntable {
   }
   fromCentre(x, y) {
     const box = this.element.getBoundingClientRect();
-    return [x - box.left - (box.width - this.inset) / 2, y - box.top - box.height / 2];
+    return [x - box.left - (box.width - this.inset[0]) / 2, y - box.top - (box.height - this.inset[1]) / 2];
   }
   down(event) {
     this.element.setPointerCapture(event.pointerId);

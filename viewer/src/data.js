@@ -43,6 +43,10 @@ class Field {
   get isVector() {
     return this.components === 3;
   }
+  /// The label whose vertices are not shown as points: those of the input say nothing.
+  get hides() {
+    return this.name === 'source_kind' && this.location === 'vertices' ? 0 : null;
+  }
   /// Distinct values in ascending order, for labels.
   get categories() {
     this.distinct ??= Float64Array.from(new Set(this.values)).sort();

@@ -90,12 +90,13 @@ class App {
     };
   }
 
-  /// The field of the state, else the first numbers of vertices, else the regions where there are several.
+  /// The field of the state, else the mean curvature or the first numbers of vertices, else the regions where there are several.
   chosenField(model) {
     if (this.state.colour === 'plain') return null;
     const named = this.state.colour ? model.field(this.state.colour) : null;
     if (named?.components === 1) return named;
-    const numbers = model.fields.find((one) => one.components === 1 && !one.isLabel && one.location === 'vertices');
+    const candidates = model.fields.filter((one) => one.components === 1 && !one.isLabel && one.location === 'vertices');
+    const numbers = candidates.find((one) => one.name === 'mean') ?? candidates[0];
     const labels = model.fields.filter((one) => one.isLabel && one.location === 'tetrahedra');
     const regions = model.counts.regions > 1 ? labels.find((one) => one.name === 'region') ?? labels.find((one) => one.name === 'marker') : null;
     return numbers ?? regions ?? null;
@@ -140,7 +141,8 @@ class App {
     document.title = this.page.models.length > 1 ? `${choice.model.name} · ${this.page.title}` : this.page.title;
     this.view.up = choice.up;
     this.view.radius = choice.model.radius;
-    this.view.inset = choice.panel && !choice.bare && innerWidth > 640 ? 264 : 0;
+    const covers = choice.panel && !choice.bare;
+    this.view.inset = innerWidth > 640 ? [covers ? 264 : 0, 0] : [0, covers ? 0.55 * innerHeight : 0];
     this.stage.setTheme(this.theme);
     const relevant = (c) => c && [c.model.index, c.solid, c.field?.key, c.map, JSON.stringify(c.clip), c.segments, c.points,
       c.directions.map((one) => one.key).join(), c.density].join('|');

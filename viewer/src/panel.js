@@ -14,11 +14,11 @@ export function element(tag, attributes = {}, ...children) {
   return node;
 }
 
-/// At most five digits, without an exponent where that is short.
+/// At most four digits, without an exponent where that is short.
 export function textOf(value) {
   if (!Number.isFinite(value)) return 'none';
   if (Number.isInteger(value) && Math.abs(value) < 1e15) return grouped(value);
-  return String(Number(value.toPrecision(5))).replace('-', '−').replace(/e\+?/, 'e');
+  return String(Number(value.toPrecision(4))).replace('-', '−').replace(/e\+?/, 'e');
 }
 export function grouped(count) {
   return String(count).replace('-', '−').replace(/\B(?=(\d{3})+$)/g, ' ');
@@ -207,12 +207,13 @@ function rampLegend(choice) {
 
 function labelLegend(field) {
   const most = 24, names = { source_kind: ['input', 'on a segment', 'in a facet'] }[field.name];
-  const items = [...field.categories.subarray(0, most)].map((value, i) => {
+  const items = [...field.categories.subarray(0, most)].flatMap((value, i) => {
+    if (field.hides === value) return [];
     const swatch = element('i');
     swatch.style.background = css(labelColour(i));
-    return element('li', {}, swatch, names?.[value] ?? (value === 0 && ['facet', 'segment', 'marker'].includes(field.name) ? 'none' : String(value)));
+    return [element('li', {}, swatch, names?.[value] ?? (value === 0 && ['facet', 'segment', 'marker'].includes(field.name) ? 'none' : String(value)))];
   });
-  const more = field.categories.length - items.length;
+  const more = field.categories.length - Math.min(most, field.categories.length);
   return [element('ul', { class: 'labels' }, ...items), ...(more > 0 ? [element('p', { class: 'beyond' }, `and ${grouped(more)} more`)] : [])];
 }
 

@@ -328,7 +328,7 @@ export class Stage {
       for (let i = 0; i < array.length; ++i) used[array[i]] = 1;
     const isolated = new Set(made.surface.points);
     for (let v = 0; v < used.length; ++v)
-      if (this.seen[v] && (choice.points || !used[v] || isolated.has(v))) chosen.push(v);
+      if (this.seen[v] && ((choice.points && !(field && field.values[v] === field.hides)) || !used[v] || isolated.has(v))) chosen.push(v);
     const place = field ? this.placing(field) : () => NOTHING;
     const geometry = new BufferGeometry();
     geometry.setAttribute('position', new BufferAttribute(Float32Array.from(chosen.flatMap((v) => [...p.subarray(3 * v, 3 * v + 3)])), 3));
