@@ -113,6 +113,7 @@ void add_view_command(CLI::App& app, Action& action) {
         ->type_name("PAGE");
     command->add_option("--title", arguments->options.title, "title of the page (default: the files' names)")
         ->type_name("TEXT");
+    add_options(*command, frontend::view_options(), arguments->options);
     add_format_option(*command, "--input-format", arguments->format);
     add_common_flags(*command, arguments->common);
     command->callback([arguments, &action] {

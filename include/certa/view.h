@@ -14,8 +14,12 @@ struct ViewModel {
     MeshDocument document;
 };
 
+/// The axis that points upwards in the first view.
+enum class UpAxis : unsigned char { y, z };
+
 struct ViewOptions {
     std::string title;  ///< of the page; empty: the names of the models
+    UpAxis up = UpAxis::z;
 };
 
 /// The page (HTML, UTF-8) that shows `models`, with a switch if there are several.
@@ -27,7 +31,8 @@ struct ViewOptions {
 /// Errors:     InputError: empty_input without a model or for a model without points, non_finite_coordinate,
 ///             index_out_of_range for corners or fields that do not fit.
 /// Guarantee:  the same bytes for the same models; the page opens without a network (tested in Chromium).
-/// Cost:       linear; about 48 bytes per vertex of a triangle mesh, 22 per tetrahedron, at most 11 per number of a field.
+/// Cost:       linear; about 48 bytes per vertex of a triangle mesh, 22 per tetrahedron, at most 11 per number of a
+/// field.
 std::string format_view(std::span<const ViewModel> models, const ViewOptions& options = {});
 
 }  // namespace certa

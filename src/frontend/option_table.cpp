@@ -109,6 +109,18 @@ constexpr std::array output_table{
         "what formats with one number per element carry: 1-based facet and segment, or the input's markers"},
 };
 
+constexpr std::array<std::string_view, 2> up_names{"y", "z"};
+
+constexpr std::array view_table{
+    Option<ViewOptions>{
+        "up",
+        "up",
+        Choice<ViewOptions>{up_names, [](const ViewOptions& o) { return static_cast<std::size_t>(o.up); },
+                            [](ViewOptions& o, std::size_t i) { o.up = static_cast<UpAxis>(i); }},
+        {},
+        "axis that points upwards in the first view"},
+};
+
 std::string quoted(std::string_view text) { return std::string("'").append(text).append("'"); }
 
 [[noreturn]] void refuse(std::string_view name, std::string_view text, std::string_view expected) {
@@ -130,6 +142,7 @@ std::string flag_of(std::string_view flag) { return std::string("--").append(fla
 std::span<const Option<ConformOptions>> conform_options() { return conform_table; }
 std::span<const Option<ConformingCheckOptions>> conforming_check_options() { return check_table; }
 std::span<const Option<OutputOptions>> output_options() { return output_table; }
+std::span<const Option<ViewOptions>> view_options() { return view_table; }
 
 double parse_number(std::string_view name, std::string_view text) {
     double value = 0.0;
@@ -280,5 +293,9 @@ template void set_option(const Option<OutputOptions>&, OutputOptions&, std::stri
 template std::string value_of(const Option<OutputOptions>&, const OutputOptions&);
 template std::string placeholder_of(const Option<OutputOptions>&);
 template std::string help_of(const Option<OutputOptions>&);
+template void set_option(const Option<ViewOptions>&, ViewOptions&, std::string_view);
+template std::string value_of(const Option<ViewOptions>&, const ViewOptions&);
+template std::string placeholder_of(const Option<ViewOptions>&);
+template std::string help_of(const Option<ViewOptions>&);
 
 }  // namespace certa::frontend

@@ -3,6 +3,7 @@
 // are made from these tables; so will be the signatures of the Python module.
 #include <certa/conforming.h>
 #include <certa/io.h>
+#include <certa/view.h>
 
 #include <cstdint>
 #include <limits>
@@ -74,6 +75,7 @@ struct MemberOf<OutputOptions> {
 std::span<const Option<ConformOptions>> conform_options();
 std::span<const Option<ConformingCheckOptions>> conforming_check_options();
 std::span<const Option<OutputOptions>> output_options();  ///< the last one, reference, is for labelled meshes only
+std::span<const Option<ViewOptions>> view_options();
 
 /// "12.5" or "2%" (of the bounding box's diagonal). `name` stands for the option in the message.
 Length parse_length(std::string_view name, std::string_view text);

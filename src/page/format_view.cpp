@@ -27,6 +27,7 @@ std::string format_view(std::span<const ViewModel> models, const ViewOptions& op
     const std::string manifest =
         page::JsonObject()
             .set("title", page::json_string(options.title.empty() ? title_of(models) : options.title))
+            .set("up", options.up == UpAxis::y ? "\"y\"" : "\"z\"")
             .set("models", page::json_list(entries))
             .text();
     const std::string_view text = page::page_template();

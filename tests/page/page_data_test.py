@@ -199,12 +199,14 @@ class ViewTest(unittest.TestCase):
         names = [model["name"] for model in self.view("part.off", "in/part.off").models]
         self.assertEqual(names, ["part.off", "in/part.off"])
         self.assertEqual(self.view("part.off", "--title", "A & B").manifest["title"], "A & B")
+        self.assertEqual(self.view("part.off").manifest["up"], "z")
+        self.assertEqual(self.view("part.off", "--up", "y").manifest["up"], "y")
 
     def test_contract(self):
         triangle = "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"
         self.write("part.off", triangle)
         inputs = {"part.off"}
-        for arguments in ([], ["part.off", "-o", "page.off"], ["part.off", "-o", "page"], ["part.off", "-o", "-", "--json", "-"],
+        for arguments in ([], ["part.off", "-o", "page.off"], ["part.off", "-o", "page"], ["part.off", "--up", "x"], ["part.off", "-o", "-", "--json", "-"],
                           ["-", "-", "--input-format", "off"], ["part.off", "-o", "page.html", "--json", "page.html"]):
             with self.subTest(arguments=arguments):
                 self.expect(2, "view", *arguments)

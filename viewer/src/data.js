@@ -140,5 +140,5 @@ export class Model {
 
 export function readPage() {
   const manifest = JSON.parse(document.getElementById('certa-manifest').textContent);
-  return { title: manifest.title, version: manifest.certa, models: manifest.models.map((entry, i) => new Model(entry, i)) };
+  return { title: manifest.title, up: manifest.up ?? 'z', models: manifest.models.map((entry, i) => new Model(entry, i)) };
 }

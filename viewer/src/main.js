@@ -69,7 +69,7 @@ class App {
   resolve() {
     const { state } = this;
     const model = this.page.models[Math.min(state.file, this.page.models.length - 1)];
-    const up = state.up ?? 'z';
+    const up = state.up ?? this.page.up;
     const solid = model.hasSolid && !(state.show === 'facets' && model.hasSurface);
     const field = this.chosenField(model);
     const automaticRange = state.range === null || !field;
