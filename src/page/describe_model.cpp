@@ -103,6 +103,21 @@ void require_fields(const ViewModel& model, const Sizes& sizes) {
     require_markers("the array of facet markers", complex.facet_markers, complex.facet_count());
 }
 
+/// Points that some element uses, else all: a stray point far away must not make the model a dot.
+std::vector<Point3> framed_points(const MeshDocument& document) {
+    const std::vector<Point3>& all = document.complex.positions;
+    std::vector<bool> used(all.size(), false);
+    for (const VertexId v : document.complex.corners) used[index_of(v)] = true;
+    for (const Edge& edge : document.complex.segments)
+        for (const VertexId v : edge) used[index_of(v)] = true;
+    for (const Tetrahedron& tetrahedron : document.tetrahedra)
+        for (const VertexId v : tetrahedron) used[index_of(v)] = true;
+    std::vector<Point3> points;
+    for (std::size_t i = 0; i < all.size(); ++i)
+        if (used[i]) points.push_back(all[i]);
+    return points.empty() ? all : points;
+}
+
 /// The bounding box and the frame in which positions are written.
 struct Frame {
     Point3 lower, upper, origin;
@@ -120,8 +135,9 @@ struct Frame {
         if (largest > 0.0) scale = std::ldexp(1.0, std::ilogb(largest) + (std::ilogb(largest) < 1023 ? 1 : 0));
     }
     float place(double value, double centre) const {
-        // Halved for the same reason.
-        return static_cast<float>((0.5 * value - 0.5 * centre) / scale * 2.0);
+        // Halved for the same reason; points outside the box may be beyond single precision.
+        constexpr double limit = 1e38;
+        return static_cast<float>(std::clamp((0.5 * value - 0.5 * centre) / scale * 2.0, -limit, limit));
     }
 };
 
@@ -283,7 +299,7 @@ std::string describe_model(const ViewModel& model, PageArrays& arrays) {
     require_corners(model.name, sizes.vertices, ElementKind::tetrahedron, document.tetrahedra);
     require_fields(model, sizes);
 
-    const Frame frame(complex.positions);
+    const Frame frame(framed_points(document));
     JsonObject entry;
     entry.set("name", json_string(model.name));
     if (!document.remark.empty()) entry.set("remark", json_string(document.remark));

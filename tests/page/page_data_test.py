@@ -148,6 +148,11 @@ class ViewTest(unittest.TestCase):
                 self.assertTrue(all(math.isfinite(x) for x in stored))
                 self.assertGreater(max(stored), 0.4)
                 self.assertAlmostEqual(stored[0], -stored[3], delta=1e-3)
+        # What no element uses does not count, however far it is.
+        self.write("stray.off", "OFF\n4 1 0\n0 0 0\n1 0 0\n0 1 0\n1e300 7 7\n3 0 1 2\n")
+        page = self.view("stray.off")
+        self.assertEqual(page.models[0]["upper"], [1, 1, 0])
+        self.assertTrue(all(math.isfinite(x) for x in page.numbers(page.models[0]["positions"])))
         self.write("point.off", "OFF\n1 0 0\n7 7 7\n")
         self.assertEqual(self.view("point.off").models[0]["scale"], 1)
 

@@ -128,6 +128,10 @@ export class Model {
     const { lower, upper, scale } = this.entry;
     return lower.map((low, i) => (upper[i] / 2 - low / 2) / scale);
   }
+  /// Whether all that it has lies in one place.
+  get isPoint() {
+    return this.halfExtents.every((half) => half === 0);
+  }
   /// A point in the input's unit.
   place(x, y, z) {
     const { origin, scale } = this.entry;

@@ -82,7 +82,7 @@ class App {
       edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES || directions.length > 0 ? 'sharp' : 'all'),
       // Where nearly every edge is a segment, drawing them says nothing.
       segments: state.segments ?? model.counts.segments < 0.5 * (model.counts.polygons || Infinity),
-      points: state.points ?? (field?.isLabel === true && field.location === 'vertices'),
+      points: state.points ?? (model.isPoint || (field?.isLabel === true && field.location === 'vertices')),
       density: state.density ?? 0.5,
       theme: state.theme ?? (this.systemTheme.matches ? 'dark' : 'light'),
       panel: state.panel ?? innerWidth > 640,
