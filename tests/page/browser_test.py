@@ -113,6 +113,7 @@ class PageTest(unittest.TestCase):
         cls.write("block.mesh", cls.block.text())
         cls.page = cls.make("page.html", "torus.ply", "block.mesh")
         cls.browser = Browser(1000, 700)
+        cls.loaded = False
         cls.addClassCleanup(cls.browser.__exit__)
 
     @classmethod
@@ -127,9 +128,13 @@ class PageTest(unittest.TestCase):
             raise RuntimeError(done.stderr.decode())
         return os.path.join(cls.folder, name)
 
-    def open(self, state="", page=None):
-        self.browser.open(page or self.page, state)
-        return self.browser.report()
+    def open(self, state="", page=None, anew=False):
+        """Shows a state of a page: loads it, or only changes the address where the common page is there already."""
+        if page or anew or not self.loaded:
+            self.browser.open(page or self.page, state)
+            type(self).loaded = page is None
+            return self.browser.report()
+        return self.do(f"clearTimeout(certa.pending); certa.written = null; history.replaceState(null, '', '#{state}'); certa.arrive()")
 
     def tearDown(self):
         errors, self.browser.errors = self.browser.errors, []
@@ -182,6 +187,21 @@ class PageTest(unittest.TestCase):
         legend = self.browser.evaluate("document.getElementById('legend').innerText")
         self.assertIn("gaussian", legend)
         self.assertIn("50", legend)
+
+    def test_directions_are_as_long_as_they_are_certain(self):
+        lengths = []
+        for confidence in (1, 0.25):
+            self.write("sure.ply", "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n"
+                       "property double dir_max_x\nproperty double dir_max_y\nproperty double dir_max_z\nproperty double confidence\n"
+                       "element face 1\nproperty list uchar int vertex_indices\nend_header\n" +
+                       "".join(f"{x} {y} 0 0 5 0 {confidence}\n" for x, y in ((0, 0), (1, 0), (0, 1))) + "3 0 1 2\n")
+            self.open("directions=dir_max", self.make("sure.html", "sure.ply"))
+            start, end = (self.browser.evaluate(f"[...certa.stage.directions[1].geometry.getAttribute('{which}').array]") for which in ("start", "end"))
+            self.assertEqual(len(start), 9)
+            for i in range(3):
+                self.assertAlmostEqual(start[3 * i], end[3 * i])  # along y
+            lengths.append(end[1] - start[1])
+        self.assertAlmostEqual(lengths[1] / lengths[0], 0.25, delta=1e-3)
 
     def test_directions_are_lines(self):
         none = self.open("color=plain&edges=none")
@@ -261,7 +281,7 @@ class PageTest(unittest.TestCase):
         self.assertEqual(address, before["hash"])
         for part in ("file=2", "show=facets", "theme=", "view="):
             self.assertIn(part, address)
-        after = self.open(address)
+        after = self.open(address, anew=True)
         self.assertEqual(before, after)
         self.assertNotEqual(before["covered"], self.open("file=2&show=facets")["covered"])
 
@@ -325,6 +345,7 @@ class PageTest(unittest.TestCase):
             text = file.read()
         at = text.index('id="certa-array-0">') + 40
         self.write("damaged.html", text[:at] + text[at + 8:])
+        type(self).loaded = False
         self.browser.open(os.path.join(self.folder, "damaged.html"))
         message = self.browser.evaluate("document.getElementById('message').innerText")
         self.assertIn("damaged", message)

@@ -74,12 +74,12 @@ class App {
     const field = this.chosenField(model);
     const automaticRange = state.range === null || !field;
     const range = automaticRange ? this.rangeOf(field) : state.range;
-    const directions = (state.directions ?? []).map((key) => model.field(key)).filter((one) => one?.isVector && one.location === 'vertices').slice(0, 3);
+    const directions = this.directionSlots(model);
     return {
       directions, model, solid, field, range, automaticRange, up,
       clip: state.clip ?? (solid ? { axis: up === 'z' ? '-y' : 'z', at: 0.5 } : false),
       map: MAPS[state.map] ? state.map : field && this.crossesZero(field) ? 'tide' : 'dusk',
-      edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES || directions.length > 0 ? 'sharp' : 'all'),
+      edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES || directions.some(Boolean) ? 'sharp' : 'all'),
       // Where nearly every edge is a segment, drawing them says nothing.
       segments: state.segments ?? model.counts.segments < 0.5 * (model.counts.polygons || Infinity),
       points: state.points ?? (model.isPoint || (field?.isLabel === true && field.location === 'vertices')),
@@ -88,6 +88,19 @@ class App {
       panel: state.panel ?? innerWidth > 640,
       bare: state.bare ?? false,
     };
+  }
+
+  /// Three places, each with its colour: the directions of the state, dir_min and dir_max always in the same.
+  directionSlots(model) {
+    const slots = [null, null, null];
+    for (const key of this.state.directions ?? []) {
+      const field = model.field(key);
+      if (!field?.isVector || field.location !== 'vertices' || slots.includes(field)) continue;
+      const wanted = { dir_min: [0], dir_max: [1] }[field.name] ?? [2, 0, 1];
+      const free = wanted.find((slot) => !slots[slot]);
+      if (free !== undefined) slots[free] = field;
+    }
+    return slots;
   }
 
   /// The field of the state, else the mean curvature or the first numbers of vertices, else the regions where there are several.
@@ -145,7 +158,7 @@ class App {
     this.view.inset = innerWidth > 640 ? [covers ? 264 : 0, 0] : [0, covers ? 0.55 * innerHeight : 0];
     this.stage.setTheme(this.theme);
     const relevant = (c) => c && [c.model.index, c.solid, c.field?.key, c.map, JSON.stringify(c.clip), c.segments, c.points,
-      c.directions.map((one) => one.key).join(), c.density].join('|');
+      c.directions.map((one) => one?.key).join(), c.density].join('|');
     if (relevant(before) !== relevant(choice)) this.stage.update(choice);
     if (choice.field && !choice.field.isLabel) this.stage.setRange(choice.field, choice.range);
     this.renderFiles();

@@ -144,10 +144,10 @@ export class Panel {
   directionSection(choice, set) {
     const vectors = choice.model.fields.filter((one) => one.isVector && one.location === 'vertices');
     if (vectors.length === 0) return null;
-    const chosen = choice.directions.map((one) => one.key);
+    const chosen = choice.directions.filter(Boolean).map((one) => one.key);
     return section('Directions',
       ...vectors.map((one) => {
-        const slot = chosen.indexOf(one.key);
+        const slot = choice.directions.indexOf(one);
         const dash = element('span', { class: 'dash' });
         dash.style.background = slot >= 0 ? css(this.app.theme.directions[slot]) : 'transparent';
         return check(one.name, slot >= 0, (on) => set({ directions: on ? [...chosen, one.key].slice(-3) : chosen.filter((key) => key !== one.key) }), dash);
@@ -224,11 +224,12 @@ export function renderLegend(root, choice, theme) {
     parts.push(element('h2', {}, field.name, ' ', element('span', {}, PLACES[field.location])));
     parts.push(...(field.isLabel ? labelLegend(field) : rampLegend(choice)));
   }
-  if (choice.directions.length > 0) {
-    parts.push(element('ul', { class: 'labels directions' }, ...choice.directions.map((one, i) => {
+  if (choice.directions.some(Boolean)) {
+    parts.push(element('ul', { class: 'labels directions' }, ...choice.directions.flatMap((one, i) => {
+      if (!one) return [];
       const dash = element('span', { class: 'dash' });
       dash.style.background = css(theme.directions[i]);
-      return element('li', {}, dash, one.name);
+      return [element('li', {}, dash, one.name)];
     })));
   }
   root.replaceChildren(...parts);

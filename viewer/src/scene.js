@@ -290,7 +290,7 @@ export class Stage {
     const p = model.positions;
     const cell = model.radius * 0.16 * 0.16 ** choice.density;
     const taken = new Set(), chosen = [];
-    if (choice.directions.length > 0) {
+    if (choice.directions.some(Boolean)) {
       const outside = new Uint8Array(p.length / 3);
       for (const v of this.shown.vertices) outside[v] = 1;
       for (let v = 0; v < p.length / 3; ++v) {
@@ -306,10 +306,13 @@ export class Stage {
       const starts = new Float32Array(field ? 3 * chosen.length : 0), ends = new Float32Array(starts.length);
       if (field) {
         const oneSided = field.name === 'normal';
+        // Principal directions are as long as they are certain: at umbilics and on planes there are none.
+        const sure = field.name.startsWith('dir_') ? model.fields.find((one) => one.name === 'confidence' && one.location === 'vertices' && one.components === 1) : null;
         chosen.forEach((v, i) => {
           const d = field.values.subarray(3 * v, 3 * v + 3);
           const length = Math.hypot(...d);
-          const reach = length > 0 ? (0.42 * cell) / length : 0;
+          const share = sure ? Math.min(1, Math.max(0, sure.values[v] || 0)) : 1;
+          const reach = length > 0 ? (0.42 * cell * share) / length : 0;
           for (let k = 0; k < 3; ++k) {
             starts[3 * i + k] = p[3 * v + k] - (oneSided ? 0 : reach * d[k]);
             ends[3 * i + k] = p[3 * v + k] + reach * d[k];
@@ -361,7 +364,7 @@ export class Stage {
     this.shared.pixel.value = ratio;
     // Edges pale as they get shorter than some pixels, evenly over the model.
     const pixels = this.prepare(this.choice.model).edge / view.unitsPerPixel;
-    this.faces.material.uniforms.edges.value = edges === 'all' ? 0.45 * Math.min(1, Math.max(0, (pixels - 2) / 8)) : 0;
+    this.faces.material.uniforms.edges.value = edges === 'all' ? (this.faces.material.uniforms.colouring.value === 1 ? 0.3 : 0.45) * Math.min(1, Math.max(0, (pixels - 2) / 8)) : 0;
     this.sharp.visible = edges !== 'none' && this.sharp.geometry.instanceCount > 0;
     // A line comes forward by its width, a point by its radius; directions also over the bend of the surface under them.
     const perPixel = view.unitsPerPixel / view.length;
