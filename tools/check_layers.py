@@ -16,6 +16,7 @@ ALLOWED = {
     "core": set(),
     "interval": {"core"},
     "expression": {"core", "interval"},
+    "implicit": {"core", "interval", "expression"},
     "exact": {"core"},
     "mesh": {"core", "exact"},
     "io": {"core", "exact", "mesh"},

@@ -2,12 +2,16 @@
 // Part III: functions of three variables whose zero set is meshed with certified topology. The language of expressions
 // is that of docs/expressions.md.
 #include <certa/error.h>
+#include <certa/mesh.h>
+#include <certa/run_control.h>
 #include <certa/types.h>
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace certa {
 
@@ -104,5 +108,72 @@ struct PointValue {
     Point3 gradient;
 };
 PointValue evaluate(const Expression& function, const Point3& place);
+
+enum class ImplicitVerdict : std::uint8_t {
+    certified,  ///< the mesh is isotopic to the zero set in the box
+    empty,      ///< the zero set in the box is proved to be empty
+    undecided,  ///< nothing is claimed; the obstacles say where and why
+};
+const char* name_of(ImplicitVerdict verdict);
+
+/// A box where the proof got stuck, and why.
+struct ImplicitObstacle {
+    enum class Reason : std::uint8_t {
+        singular,   ///< f and its gradient cannot be told from 0 together
+        meets_box,  ///< the surface crosses or touches the boundary of the box
+        undefined,  ///< f cannot be shown to be defined there
+        precision,  ///< the cell is as small as doubles allow
+        budget,     ///< max_cells
+        cancelled,
+    };
+    Reason reason{};
+    Point3 low, high;
+};
+const char* name_of(ImplicitObstacle::Reason reason);
+
+struct ImplicitOptions {
+    std::uint64_t max_cells = 8'000'000;          ///< cells of the octree; about 100 bytes each, 500 near the surface
+    std::optional<int> max_depth = std::nullopt;  ///< of the octree; automatic: as deep as doubles carry, at most 29
+};
+
+/// A connected component of the surface.
+struct ImplicitComponent {
+    int genus = 0;
+    int inner_sign = 0;  ///< of f just inside
+    int degree = 0;      ///< of the gradient over what the component encloses: inner_sign * (genus - 1)
+    std::optional<std::uint32_t> parent;  ///< the component next around it
+};
+
+struct ImplicitStatistics {
+    std::uint64_t cells = 0, leaves = 0, open_leaves = 0;  ///< open: no sign of f is proved on the leaf
+    std::uint64_t clusters = 0, rounds = 0, tetrahedra = 0;
+};
+
+struct ImplicitResult {
+    Outcome outcome = Outcome::done;
+    ImplicitVerdict verdict = ImplicitVerdict::undecided;
+    TriangleMesh mesh;                               ///< closed, embedded, faces towards f > 0; empty unless certified
+    std::vector<std::uint32_t> triangle_components;  ///< per triangle
+    std::vector<ImplicitComponent> components;
+    std::vector<ImplicitObstacle> obstacles;  ///< the first 1000
+    std::size_t obstacle_count = 0;
+    Point3 low, high;  ///< the box of the proof: that of the caller, enlarged by at most 2^-20 of its size
+    ImplicitStatistics statistics;
+};
+
+/// Meshes {f = 0} in a box with certified topology.
+///
+/// Input:      a function, and a box whose boundary the surface does not meet.
+/// Result:     see ImplicitResult.
+/// Errors:     InputError for a box that makes no sense.
+/// Guarantee:  `certified`: the zero set in the box is a smooth closed surface, ambient isotopic in the box to the mesh
+/// as its
+///             doubles stand; `empty`: there is none (docs/implicit-theorem.md). Whatever cannot be proved is
+///             `undecided`.
+/// Cost:       grows with the logarithm of the distance to the next critical value for isolated critical points;
+///             deterministic for any number of threads.
+/// Source:     thesis, Part III; conditions and growth as in docs/implicit-theorem.md.
+ImplicitResult mesh_implicit(const Expression& function, const Point3& low, const Point3& high,
+                             const ImplicitOptions& options = {}, const RunControl& control = {});
 
 }  // namespace certa

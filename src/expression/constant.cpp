@@ -94,11 +94,12 @@ int compare_sizes(const Decimal& a, const Decimal& b) {
 }
 
 std::optional<Constant> as_rational(const Decimal& number) {
-    if (number.digits.size() > 18) return std::nullopt;
+    // Everything below stays under 10^38 < 2^127.
+    if (number.digits.size() > 37) return std::nullopt;
     Wide mantissa = 0;
     for (const char c : number.digits) mantissa = 10 * mantissa + (c - '0');
     std::int64_t shift = number.exponent - static_cast<std::int64_t>(number.digits.size());
-    if (shift < -18 || shift > 18) return std::nullopt;
+    if (shift < -37 || static_cast<std::int64_t>(number.digits.size()) + shift > 37) return std::nullopt;
     Wide denominator = 1;
     for (; shift > 0; --shift) mantissa *= 10;
     for (; shift < 0; ++shift) denominator *= 10;

@@ -1,0 +1,36 @@
+#pragma once
+// The conditions of the theorem on T and W, and where they fail.
+#include <cstdint>
+#include <vector>
+
+#include "implicit/clusters.h"
+#include "implicit/growth.h"
+#include "implicit/triangulation.h"
+
+namespace certa::implicit {
+
+/// A component V of W and of the surface in it.
+struct ComponentOfW {
+    std::uint32_t first_point = none;  ///< lowest marked point
+    int euler = 0;                     ///< Euler characteristic of the surface in V
+    int inner_sign = 0;                ///< of f just inside V
+    int degree = 0;                    ///< of grad f over everything that V encloses
+    std::uint32_t parent = none;       ///< the component next around it
+};
+
+struct Findings {
+    std::vector<std::uint32_t> offenders;  ///< leaves to split; empty: every condition holds
+    const char* condition = nullptr;       ///< the first one that failed
+    std::vector<ComponentOfW> components;
+    std::vector<std::uint32_t> component_of_point;  ///< per point: position in `components`, none for unmarked ones
+};
+
+/// Checks, in this order: every tetrahedron with both signs has all its points marked (conditions 3 and M^ in the
+/// interior of W); f has the declared sign on the largest marked face of every tetrahedron outside W (condition 1); per
+/// component of W, the degree of grad f over what it encloses is +-chi/2 (condition 4*). Conditions 0 and 2 hold by
+/// construction: see docs/implicit-theorem.md.
+Findings check_conditions(const Octree& tree, const Triangulation& triangulation, const Growth& growth,
+                          const std::vector<Cluster>& clusters, const expression::Tape& tape,
+                          const RunControl& control);
+
+}  // namespace certa::implicit

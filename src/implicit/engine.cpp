@@ -1,0 +1,159 @@
+// The main loop of Part III: classify, find clusters and degrees, then triangulate, grow W, check the conditions, and
+// split what breaks them, a generation a round, until all hold or nothing more can be done.
+#include <certa/implicit.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/assert.h"
+#include "implicit/clusters.h"
+#include "implicit/conditions.h"
+#include "implicit/growth.h"
+#include "implicit/refine.h"
+#include "implicit/surface.h"
+#include "interval/environment.h"
+
+namespace certa {
+namespace implicit {
+namespace {
+
+class Engine {
+public:
+    Engine(const Expression& function, const Grid& grid, const ImplicitOptions& options, const RunControl& control)
+        : tape_(function), tree_(grid), field_(tape_), control_(control) {
+        limits_.max_cells = options.max_cells;
+        limits_.max_depth = std::min(options.max_depth.value_or(tree_.max_depth()), tree_.max_depth());
+    }
+
+    ImplicitResult run() {
+        result_.low = tree_.grid().place(GridPoint{0, 0, 0});
+        result_.high = tree_.grid().place(GridPoint{tree_.grid().side(), tree_.grid().side(), tree_.grid().side()});
+        if (const auto obstacle = classify(tree_, tape_, limits_, control_)) return stop(*obstacle);
+        const std::vector<Cluster> clusters = find_clusters(tree_);
+        result_.statistics.clusters = clusters.size();
+        for (;;) {
+            ++result_.statistics.rounds;
+            if (control_.cancelled()) return stop({ImplicitObstacle::Reason::cancelled, {}});
+            control_.report("certify", 1.0 - 1.0 / static_cast<double>(1 + result_.statistics.rounds));
+            const Triangulation triangulation(tree_, field_, signs_);
+            const Growth growth = grow(triangulation);
+            const Findings findings = check_conditions(tree_, triangulation, growth, clusters, tape_, control_);
+            if (findings.offenders.empty()) {
+                conclude(triangulation, findings);
+                return std::move(result_);
+            }
+            if (const auto obstacle = split_all(tree_, findings.offenders, tape_, limits_, control_))
+                return stop(*obstacle);
+        }
+    }
+
+private:
+    void count() {
+        result_.statistics.cells = tree_.cells().size();
+        for (const std::uint32_t leaf : tree_.leaves()) {
+            ++result_.statistics.leaves;
+            if (tree_.cell(leaf).known.sign == 0) ++result_.statistics.open_leaves;
+        }
+    }
+
+    ImplicitResult stop(const Obstacle& obstacle) {
+        count();
+        result_.verdict = ImplicitVerdict::undecided;
+        result_.outcome = obstacle.reason == ImplicitObstacle::Reason::cancelled ? Outcome::cancelled
+                          : obstacle.reason == ImplicitObstacle::Reason::budget  ? Outcome::over_budget
+                                                                                 : Outcome::undecided;
+        for (const std::uint32_t leaf : obstacle.leaves) {
+            if (result_.obstacles.size() == 1000) break;
+            const Cell& cell = tree_.cell(leaf);
+            result_.obstacles.push_back(
+                {obstacle.reason, tree_.grid().place(cell.low), tree_.grid().place(tree_.high_of(cell))});
+        }
+        result_.obstacle_count = obstacle.leaves.size();
+        if (obstacle.leaves.empty()) result_.obstacles.push_back({obstacle.reason, result_.low, result_.high});
+        return std::move(result_);
+    }
+
+    void conclude(const Triangulation& triangulation, const Findings& findings) {
+        count();
+        Surface surface = build_surface(tree_, triangulation, findings, field_);
+        result_.statistics.tetrahedra = triangulation.tetrahedra().size();
+        result_.outcome = Outcome::done;
+        result_.verdict = findings.components.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
+        for (const ComponentOfW& component : findings.components) {
+            CERTA_ASSERT(component.euler % 2 == 0 && component.euler <= 2);
+            result_.components.push_back(
+                {1 - component.euler / 2, component.inner_sign, component.degree,
+                 component.parent == none ? std::nullopt : std::optional<std::uint32_t>(component.parent)});
+        }
+        result_.mesh = std::move(surface.mesh);
+        result_.triangle_components = std::move(surface.component_of_triangle);
+    }
+
+    expression::Tape tape_;
+    Octree tree_;
+    Field field_;
+    const RunControl& control_;
+    Limits limits_;
+    std::vector<Triangulation::PointSign> signs_;
+    ImplicitResult result_;
+};
+
+[[noreturn]] void refuse(DefectKind kind, const std::string& message) {
+    throw InputError({Defect{kind, {}, {}, message}});
+}
+
+}  // namespace
+}  // namespace implicit
+
+ImplicitResult mesh_implicit(const Expression& function, const Point3& low, const Point3& high,
+                             const ImplicitOptions& options, const RunControl& control) {
+    const double sides[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
+    for (const double side : sides) {
+        if (!std::isfinite(side) || !(side > 0))
+            implicit::refuse(
+                DefectKind::option_out_of_range,
+                "the box must have finite corners, and its high corner must be above its low one on every axis");
+    }
+    if (options.max_depth && *options.max_depth < 1)
+        implicit::refuse(DefectKind::option_out_of_range, "max_depth must be at least 1");
+    if (options.max_cells < 64) implicit::refuse(DefectKind::option_out_of_range, "max_cells must be at least 64");
+    const auto grid = implicit::Grid::around(low, high);
+    if (!grid)
+        implicit::refuse(DefectKind::coordinate_out_of_range,
+                         "the box is too small for its distance from the origin, or too large or small for doubles: "
+                         "move or scale the function");
+    interval::require_sound_environment();
+    return implicit::Engine(function, *grid, options, control).run();
+}
+
+const char* name_of(ImplicitVerdict verdict) {
+    switch (verdict) {
+        case ImplicitVerdict::certified:
+            return "certified";
+        case ImplicitVerdict::empty:
+            return "empty";
+        default:
+            return "undecided";
+    }
+}
+
+const char* name_of(ImplicitObstacle::Reason reason) {
+    using Reason = ImplicitObstacle::Reason;
+    switch (reason) {
+        case Reason::singular:
+            return "singular";
+        case Reason::meets_box:
+            return "meets_box";
+        case Reason::undefined:
+            return "undefined";
+        case Reason::precision:
+            return "precision";
+        case Reason::budget:
+            return "budget";
+        default:
+            return "cancelled";
+    }
+}
+
+}  // namespace certa

@@ -1,0 +1,40 @@
+#pragma once
+// The growth of W: which points of T join it, in which order.
+#include <cstdint>
+#include <vector>
+
+#include "implicit/triangulation.h"
+
+namespace certa::implicit {
+
+/// W is the subcomplex of T of all simplices whose points are all marked.
+struct Growth {
+    std::vector<char> marked;          ///< per point
+    std::vector<std::uint32_t> order;  ///< marked points in the order of marking: the certificate of the collapse
+};
+
+/// Marks points as long as some may join.
+///
+/// Definition: a point v may join when, in its link, the part spanned by points of the other sign and marked points is
+/// non-empty and
+///             connected, and so is the part spanned by the other points (then the first part is contractible, the link
+///             being a sphere). Each step adds a cone over a contractible set, so W collapses to the surface of sign
+///             changes (Lemma 51), once every tetrahedron with both signs has all its points marked.
+Growth grow(const Triangulation& triangulation);
+
+/// Whether one point may join now; the test of the definition above.
+class LinkTest {
+public:
+    explicit LinkTest(std::size_t point_count) : index_(point_count, none) {}
+    bool may_join(const Triangulation& triangulation, const std::vector<char>& marked, std::uint32_t point);
+    /// The points of the link that was tested last.
+    const std::vector<std::uint32_t>& link() const { return link_; }
+
+private:
+    std::uint32_t local(std::uint32_t point);
+    std::uint32_t find(std::uint32_t i);
+    std::vector<std::uint32_t> index_, link_, parents_;
+    std::vector<char> inside_;
+};
+
+}  // namespace certa::implicit

@@ -1,0 +1,30 @@
+#pragma once
+// Disjoint sets of indices; the lowest index stands for its set, so that results do not depend on the order of unions.
+#include <cstdint>
+#include <numeric>
+#include <vector>
+
+namespace certa::implicit {
+
+class UnionFind {
+public:
+    explicit UnionFind(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), 0u); }
+
+    std::uint32_t find(std::uint32_t i) {
+        while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+        return i;
+    }
+    void unite(std::uint32_t a, std::uint32_t b) {
+        a = find(a);
+        b = find(b);
+        if (a < b)
+            parents_[b] = a;
+        else
+            parents_[a] = b;
+    }
+
+private:
+    std::vector<std::uint32_t> parents_;
+};
+
+}  // namespace certa::implicit
