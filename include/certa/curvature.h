@@ -217,7 +217,7 @@ struct RegionResult {
 RegionResult compute_region_measures(const TriangleMesh& mesh, const Region& region, const RegionOptions& options = {},
                                      const RunControl& control = {});
 
-/// The multiplicity of (p, h) in the normal cycle of the solid that the surface bounds.
+/// The multiplicities of (p, h) in the normal cycle of the solid that the surface bounds, for each direction h.
 ///
 /// Definition: mu(p, h) = chi(upper star) = 1 - chi(L with x . h >= 0), L being the part of a small sphere around p
 ///             inside the solid. Its integral over the sphere of directions is the angle defect of p.
@@ -225,7 +225,8 @@ RegionResult compute_region_measures(const TriangleMesh& mesh, const Region& reg
 ///             at p (such directions have measure 0).
 /// Errors:     InputError index_out_of_range, open_facet where the surface is open at p.
 /// Source:     thesis, Lemma 16.
-int compute_multiplicity(const TriangleMesh& mesh, VertexId vertex, const Point3& direction);
+std::vector<int> compute_multiplicities(const TriangleMesh& mesh, VertexId vertex,
+                                        const std::vector<Point3>& directions);
 
 /// Coefficients of the volume of the offset: volume(eps) = area eps + mean eps^2 / 2 + gaussian eps^3 / 3, which is the
 /// volume between a convex solid's boundary and the offset at distance eps (thesis, 2.2.1, the tube formula).

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "core/parallel.h"
+#include "curvature/bound.h"
 #include "curvature/estimators.h"
 
 namespace certa {
@@ -37,6 +38,9 @@ void require_valid(const CurvatureOptions& options) {
         refuse(defects, "bounds need the estimator normal_cycle");
     if (options.estimator == Estimator::corrected && options.neighborhood != Neighborhood::rings)
         refuse(defects, "the corrected estimator needs rings");
+    if (options.estimator == Estimator::automatic &&
+        (options.neighborhood != Neighborhood::rings || options.weight != Weight::indicator))
+        refuse(defects, "the automatic estimator chooses the region around vertices itself");
     if ((options.measures || options.tensors) && options.estimator != Estimator::normal_cycle)
         refuse(defects, "measures and tensors need the estimator normal_cycle");
     if (options.estimator == Estimator::jet &&
@@ -85,14 +89,7 @@ public:
         const auto length = [&](double x) { return std::ldexp(x, unit_); };
         const auto area = [&](double x) { return std::ldexp(x, 2 * unit_); };
         result_.area[i] = area(row.sums.area);
-        result_.mean[i] = std::ldexp(row.mean, -unit_);
-        result_.gaussian[i] = std::ldexp(row.gaussian, -2 * unit_);
-        result_.k_min[i] = std::ldexp(row.principal.k_min, -unit_);
-        result_.k_max[i] = std::ldexp(row.principal.k_max, -unit_);
-        result_.dir_min[i] = row.principal.dir_min;
-        result_.dir_max[i] = row.principal.dir_max;
-        result_.normal[i] = row.principal.normal;
-        result_.confidence[i] = row.principal.confidence;
+        write_densities(i, row);
         result_.flags[i] |= row.flags;
         if (!result_.mean_measure.empty()) {
             result_.mean_measure[i] = length(row.sums.swapped.trace());
@@ -108,6 +105,24 @@ public:
     }
 
 private:
+    /// Regions so small that densities overflow have none: 0, and a flag.
+    void write_densities(Index i, const VertexRow& row) {
+        const double mean = std::ldexp(row.mean, -unit_), gaussian = std::ldexp(row.gaussian, -2 * unit_);
+        const double k_min = std::ldexp(row.principal.k_min, -unit_), k_max = std::ldexp(row.principal.k_max, -unit_);
+        const bool defined = (row.flags & vertex_flags::undefined) == 0 && std::isfinite(mean) &&
+                             std::isfinite(gaussian) && std::isfinite(k_min) && std::isfinite(k_max) &&
+                             std::isfinite(norm(row.principal.dir_min));
+        if (!defined) {
+            result_.flags[i] |= vertex_flags::undefined;
+            return;
+        }
+        result_.mean[i] = mean, result_.gaussian[i] = gaussian;
+        result_.k_min[i] = k_min, result_.k_max[i] = k_max;
+        result_.dir_min[i] = row.principal.dir_min, result_.dir_max[i] = row.principal.dir_max;
+        result_.normal[i] = row.principal.normal;
+        result_.confidence[i] = row.principal.confidence;
+    }
+
     const Surface& surface_;
     CurvatureResult& result_;
     int unit_;
@@ -131,6 +146,26 @@ FactoryPointer choose_factory(const Surface& surface, const Cells& cells, const 
             return make_geodesic_factory(surface, cells, radius, control);
     }
     return nullptr;
+}
+
+/// Theorem 13's numbers for the ring of every vertex (as a union of triangles, whatever its rim).
+void compute_bounds(const Surface& surface, const Cells& cells, const CurvatureOptions& options,
+                    CurvatureResult& result, const RunControl& control) {
+    result.bounds.resize(surface.positions.size());
+    Pool<RingWalker> pool;
+    core::parallel_for(surface.used_vertices, 1024, control, [&](std::size_t begin, std::size_t end) {
+        if (control.cancelled()) return;
+        auto walker = pool.take([&] { return std::make_unique<RingWalker>(surface, cells); });
+        for (std::size_t v = begin; v < end; ++v) {
+            const Index i = surface.vertex_sources[v];
+            const std::vector<Index>& faces = walker->collect_faces(static_cast<Index>(v), options.rings);
+            const BoundTerms terms = sum_terms(surface, cells, faces, [&](Index f) { return walker->holds_face(f); });
+            const double estimate = std::max(std::abs(result.k_min[i]), std::abs(result.k_max[i]));
+            const double kappa = std::ldexp(options.max_curvature.value_or(estimate), surface.exponent);
+            result.bounds[i] = evaluate_bound(terms, kappa, !options.max_curvature, surface.exponent);
+        }
+        pool.give_back(std::move(walker));
+    });
 }
 
 bool run_all(const Surface& surface, const EstimatorFactory& factory, Output& output, const RunControl& control) {
@@ -158,10 +193,9 @@ bool run_all(const Surface& surface, const EstimatorFactory& factory, Output& ou
 }  // namespace
 }  // namespace curvature
 
-CurvatureResult compute_curvature(const TriangleMesh& mesh, const CurvatureOptions& options,
-                                  const RunControl& control) {
+CurvatureResult compute_curvature(const TriangleMesh& mesh, const CurvatureOptions& asked, const RunControl& control) {
     using namespace curvature;
-    require_valid(options);
+    require_valid(asked);
     CurvatureResult result;
     CurvatureStatistics times;
     Stopwatch stopwatch(times);
@@ -172,16 +206,30 @@ CurvatureResult compute_curvature(const TriangleMesh& mesh, const CurvatureOptio
     result.euler_characteristic = surface.euler_characteristic;
     result.total = measures_of(sum_all(cells), surface.exponent);
     stopwatch.lap("build");
-    const double radius = options.radius.resolve(options.radius.relative_to_diagonal ? surface.diagonal : 1.0) *
-                          (options.radius.relative_to_diagonal ? 1.0 : std::ldexp(1.0, -surface.exponent));
+    const CurvatureOptions options =
+        asked.estimator == Estimator::automatic ? choose_estimator(surface, cells, asked, result.statistics) : asked;
+    const double radius = options.radius.relative_to_diagonal ? options.radius.value * surface.diagonal
+                                                              : std::ldexp(options.radius.value, -surface.exponent);
     const FactoryPointer factory = choose_factory(surface, cells, options, radius, control);
     Output output(surface, options, result);
     if (!run_all(surface, *factory, output, control)) result.outcome = Outcome::cancelled;
     stopwatch.lap("estimate");
+    if (options.bounds && result.outcome == Outcome::done) {
+        compute_bounds(surface, cells, options, result, control);
+        stopwatch.lap("bounds");
+        if (control.cancelled()) result.outcome = Outcome::cancelled;
+    }
     CurvatureStatistics& statistics = result.statistics;
     statistics.mean_edge_length = std::ldexp(statistics.mean_edge_length, surface.exponent);
     statistics.estimator = options.estimator;
-    statistics.radius = std::ldexp(radius, surface.exponent);
+    if (options.neighborhood == Neighborhood::ball || options.neighborhood == Neighborhood::geodesic)
+        statistics.radius = std::ldexp(radius, surface.exponent);
+    if (!result.radius.empty()) {
+        std::vector<double> radii = result.radius;
+        const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
+        std::nth_element(radii.begin(), middle, radii.end());
+        statistics.radius = *middle;
+    }
     for (const std::uint8_t flags : result.flags) statistics.fallbacks += (flags & vertex_flags::fallback) != 0;
     statistics.stage_seconds = times.stage_seconds;
     return result;

@@ -49,6 +49,12 @@ FactoryPointer make_corrected_factory(const Surface& surface, const Cells& cells
 FactoryPointer make_jet_factory(const Surface& surface, const Cells& cells, std::uint64_t degree, std::uint64_t rings,
                                 double radius);
 
+/// Median residual of local fits of degree 4 over the mean edge length.
+double estimate_noise(const Surface& surface, const Cells& cells, std::uint64_t rings);
+/// What Estimator::automatic stands for on this surface; tells noise and choice in `statistics`.
+CurvatureOptions choose_estimator(const Surface& surface, const Cells& cells, const CurvatureOptions& options,
+                                  CurvatureStatistics& statistics);
+
 /// Lends one object per range of a parallel loop; memory stays with the pool.
 template <class T>
 class Pool {

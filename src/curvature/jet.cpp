@@ -44,7 +44,7 @@ bool JetFitter::solve(std::size_t rows, std::size_t columns) {
     return true;
 }
 
-JetFit JetFitter::fit(Index vertex, const std::vector<Index>& points, std::uint64_t degree) {
+JetFit JetFitter::fit(Index vertex, const std::vector<Index>& points, std::uint64_t degree, bool tapered) {
     JetFit fit;
     const Point3& normal = surface_.normals[vertex];
     if (normal == Point3{}) return fit;
@@ -61,8 +61,10 @@ JetFit JetFitter::fit(Index vertex, const std::vector<Index>& points, std::uint6
     for (std::size_t r = 0; r < rows; ++r) {
         const Point3 d = (1.0 / size) * (surface_.positions[points[r]] - origin);
         const double u = dot(d, a), v = dot(d, b);
-        values_[r] = dot(d, normal);
-        matrix_[r] = 1.0;
+        // Rows are scaled by the root of the weight 1 - t^2, just short of 0 at the farthest point.
+        const double weight = tapered && rows >= 2 * columns ? std::sqrt(1.0 - 0.98 * std::min(1.0, dot(d, d))) : 1.0;
+        values_[r] = weight * dot(d, normal);
+        matrix_[r] = weight;
         std::size_t c = 1;
         for (std::uint64_t k = 1; k <= degree; ++k) {
             // u times the terms of degree k - 1, then v times the last of them.
@@ -107,10 +109,10 @@ public:
         JetFit fit;
         const std::vector<Index>* points =
             rings_ > 0 ? &walker_.collect(vertex, rings_) : &walker_.collect_ball(vertex, radius_);
-        fit = fitter_.fit(vertex, *points, degree_);
+        fit = fitter_.fit(vertex, *points, degree_, true);
         for (std::uint64_t rings = 2; !fit.ok && rings <= 4; ++rings) {
             points = &walker_.collect(vertex, rings);
-            fit = fitter_.fit(vertex, *points, 2);
+            fit = fitter_.fit(vertex, *points, 2, true);
             row.flags |= vertex_flags::fallback;
         }
         for (const Index v : *points) {

@@ -18,7 +18,9 @@ public:
     JetFitter(const Surface& surface) : surface_(surface) {}
     /// Fits heights over the plane at a right angle to the vertex's normal through the given vertices; lowers the
     /// degree where there are fewer points than two more than coefficients.
-    JetFit fit(Index vertex, const std::vector<Index>& points, std::uint64_t degree);
+    /// `tapered`: points count less towards the end of the window where there are twice as many as coefficients, which
+    /// lets wide windows average noise with less bias; the residual is then no estimate of the noise.
+    JetFit fit(Index vertex, const std::vector<Index>& points, std::uint64_t degree, bool tapered);
 
 private:
     /// Solves the least-squares problem in place; false if it is singular.

@@ -263,10 +263,9 @@ private:
             if (around[i].second.forward == around[i - 1].second.forward && around[i + 1].first == around[i].first)
                 std::swap(around[i], around[i + 1]);
         const std::size_t n = around.size(), start = around[0].second.forward ? n - 1 : 0;
-        for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t i = 0; i < n; ++i)
             if (around[(start + i) % n].second.forward != (i % 2 == 1)) return false;
-            sides[i] = around[(start + i) % n].second;
-        }
+        for (std::size_t i = 0; i < n; ++i) sides[i] = around[(start + i) % n].second;
         return true;
     }
 
@@ -338,6 +337,7 @@ std::array<std::size_t, 2> count_fans(const Surface& surface, Index vertex, std:
             f = surface.across(f, surface.face_hinges[f][turn[i]]);
             if (f == no_index) return false;
             if (f == start) return true;
+            CERTA_ASSERT(seen.size() <= faces.size());
             seen.push_back(f);
         }
     };

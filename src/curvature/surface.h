@@ -95,7 +95,7 @@ inline void add_outer(SymmetricTensor3& sum, double factor, const Point3& u) {
 inline Point3 unit_or_zero(const Point3& v) {
     double length = norm(v);
     if (length > 1e-100) return (1.0 / length) * v;
-    const Point3 w = 0x1p500 * (0x1p500 * v);  // squares of tiny lengths vanish
+    const Point3 w = 0x1p300 * (0x1p300 * v);  // squares of tiny lengths vanish
     length = norm(w);
     return length > 0.0 ? (1.0 / length) * w : Point3{};
 }

@@ -180,7 +180,7 @@ TriangleMesh make_icosphere(std::uint32_t levels) {
     for (std::uint32_t level = 0; level < levels; ++level) {
         std::map<std::array<std::uint32_t, 2>, VertexId> middles;
         const auto middle = [&](VertexId a, VertexId b) {
-            const auto [low, high] = std::minmax(index_of(a), index_of(b));
+            const std::uint32_t low = std::min(index_of(a), index_of(b)), high = std::max(index_of(a), index_of(b));
             const auto [entry, fresh] = middles.try_emplace({low, high}, VertexId{});
             if (fresh) {
                 entry->second = id(mesh.positions.size());
