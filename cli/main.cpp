@@ -40,6 +40,7 @@ int run(int argc, char** argv) {
 #ifdef CERTA_HAS_CONFORM
     certa::cli::add_conform_command(app, action);
 #endif
+    certa::cli::add_curvature_command(app, action);
     certa::cli::add_check_command(app, action);
     certa::cli::add_info_command(app, action);
     certa::cli::add_convert_command(app, action);

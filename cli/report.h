@@ -48,6 +48,9 @@ Json to_json(std::span<const frontend::Option<Options>> table, const Options& op
                     result[name] = options.*member ? Json(*(options.*member)) : Json(nullptr);
                 } else if constexpr (std::is_same_v<Kind, frontend::Choice<Options>>) {
                     result[name] = frontend::value_of(option, options);
+                } else if constexpr (std::is_same_v<Kind, frontend::Spelled<Options>>) {
+                    const std::string value = member.get(options);
+                    result[name] = value.empty() ? Json(nullptr) : Json(value);
                 } else {
                     result[name] = options.*member;
                 }

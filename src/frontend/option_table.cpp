@@ -217,6 +217,8 @@ void set_option(const Option<Options>& option, Options& options, std::string_vie
                 const std::uint64_t value = parse_count(name, text);
                 require_in_bounds(name, text, option.bounds, static_cast<double>(value));
                 options.*member = value;
+            } else if constexpr (std::same_as<Kind, Spelled<Options>>) {
+                member.set(options, name, text);
             } else {
                 for (std::size_t i = 0; i < member.names.size(); ++i)
                     if (member.names[i] == text) return member.set(options, i);
@@ -237,6 +239,8 @@ std::string value_of(const Option<Options>& option, const Options& options) {
                 return options.*member ? std::to_string(*(options.*member)) : std::string();
             } else if constexpr (std::same_as<Kind, Choice<Options>>) {
                 return std::string(member.names[member.get(options)]);
+            } else if constexpr (std::same_as<Kind, Spelled<Options>>) {
+                return member.get(options);
             } else {
                 return text_of(options.*member);
             }
@@ -257,6 +261,8 @@ std::string placeholder_of(const Option<Options>& option) {
                 return "LENGTH";
             else if constexpr (std::same_as<Kind, std::optional<std::uint64_t> Options::*>)
                 return "COUNT";
+            else if constexpr (std::same_as<Kind, Spelled<Options>>)
+                return std::string(member.placeholder);
             else {
                 std::string text;
                 for (const std::string_view name : member.names) text.append(text.empty() ? "" : "|").append(name);
@@ -270,6 +276,13 @@ template <class Options>
 std::string help_of(const Option<Options>& option) {
     std::string text(option.help);
     if (is_flag(option)) return text;
+    const bool spelled =
+        std::visit([](const auto& member) { return std::same_as<std::decay_t<decltype(member)>, Spelled<Options>>; },
+                   option.member);
+    if (spelled) {
+        const std::string value = value_of(option, Options{});
+        return value.empty() ? text : text.append(" (default ").append(value).append(")");
+    }
     const bool is_length = placeholder_of(option) == "LENGTH";
     text.append(" (");
     if (is_length)
@@ -289,6 +302,10 @@ template void set_option(const Option<ConformingCheckOptions>&, ConformingCheckO
 template std::string value_of(const Option<ConformingCheckOptions>&, const ConformingCheckOptions&);
 template std::string placeholder_of(const Option<ConformingCheckOptions>&);
 template std::string help_of(const Option<ConformingCheckOptions>&);
+template void set_option(const Option<CurvatureOptions>&, CurvatureOptions&, std::string_view);
+template std::string value_of(const Option<CurvatureOptions>&, const CurvatureOptions&);
+template std::string placeholder_of(const Option<CurvatureOptions>&);
+template std::string help_of(const Option<CurvatureOptions>&);
 template void set_option(const Option<OutputOptions>&, OutputOptions&, std::string_view);
 template std::string value_of(const Option<OutputOptions>&, const OutputOptions&);
 template std::string placeholder_of(const Option<OutputOptions>&);

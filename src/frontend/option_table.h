@@ -2,10 +2,12 @@
 // The options of every verb, once: name, unit, default, bounds, help. The command's help, its parsing and its report
 // are made from these tables; so will be the signatures of the Python module.
 #include <certa/conforming.h>
+#include <certa/curvature.h>
 #include <certa/io.h>
 #include <certa/view.h>
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <span>
@@ -42,6 +44,15 @@ struct Choice {
     void (*set)(Options&, std::size_t);
 };
 
+/// Set and printed by functions of its own, for what no plain member says. An empty text stands for "not set"; it
+/// throws OptionError for a text that is no value, with the option's flag in front.
+template <class Options>
+struct Spelled {
+    std::string_view placeholder;
+    std::string (*get)(const Options&);
+    void (*set)(Options&, std::string_view flag, std::string_view text);
+};
+
 /// The kinds of members that options of a verb have.
 template <class Options>
 struct MemberOf {
@@ -68,14 +79,28 @@ struct OutputOptions {
 };
 
 template <>
+struct MemberOf<CurvatureOptions> {
+    using type = std::variant<bool CurvatureOptions::*, Choice<CurvatureOptions>, Spelled<CurvatureOptions>>;
+};
+template <>
 struct MemberOf<OutputOptions> {
     using type = std::variant<Choice<OutputOptions>>;
 };
 
 std::span<const Option<ConformOptions>> conform_options();
 std::span<const Option<ConformingCheckOptions>> conforming_check_options();
+std::span<const Option<CurvatureOptions>> curvature_options();
 std::span<const Option<OutputOptions>> output_options();  ///< the last one, reference, is for labelled meshes only
 std::span<const Option<ViewOptions>> view_options();
+
+/// "rings", "ball" or "geodesic"
+std::string neighborhood_name(const CurvatureOptions& options);
+
+/// Reads the faces that a file lists: 0-based.
+using FaceReader = std::function<std::vector<std::uint32_t>(const std::string& path)>;
+/// A region as `certa curvature --region` takes it: ball:x,y,z:R, box:x,y,z:x,y,z, halfspace:x,y,z:nx,ny,nz (outward
+/// normal), faces:FILE, joined by & | ! and parentheses. Errors: OptionError with the place.
+Region parse_region(std::string_view text, const FaceReader& read_faces);
 
 /// "12.5" or "2%" (of the bounding box's diagonal). `name` stands for the option in the message.
 Length parse_length(std::string_view name, std::string_view text);
