@@ -33,6 +33,7 @@ LIBRARIES = {
     "CGAL/": {"exact", "delaunay", "conforming", "verify"},
     "boost/": {"exact", "delaunay", "conforming", "verify", "cli"},
     "tao/": {"expression"},
+    "mpfi": {"verify"},
     "CLI/": {"cli"},
     "nlohmann/": {"cli"},
 }
@@ -43,7 +44,7 @@ PUBLIC_FORBIDDEN = re.compile(r"^(CGAL|Eigen|boost|tbb|gmp|mpfr|iostream|istream
 FORBIDDEN_NAME = re.compile(r"(^|_)(utils?|helpers?|misc|common|managers?|base)(_|\.|$)")
 MAX_LINES = 800
 # Algorithms take and return values: they never print or end the process.
-SILENT = {"core", "interval", "exact", "mesh", "page", "delaunay", "conforming", "curvature", "verify"}
+SILENT = {"core", "interval", "expression", "implicit", "exact", "mesh", "page", "delaunay", "conforming", "curvature", "verify"}
 NOISE = re.compile(r"\bstd::(cout|cerr|clog)\b|\bstd::exit\b|[^\w.:>]exit\s*\(|\bf?printf\s*\(|\bfesetround\s*\(")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')

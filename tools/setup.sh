@@ -1,7 +1,7 @@
 # Shared by ./demo and ./test: install what is missing, configure, build within the machine's memory.
 # Sourced by bash with `set -euo pipefail` in the root of the checkout.
 
-build_packages=(g++ cmake ninja-build git ca-certificates libcgal-dev libtbb-dev tao-pegtl-dev nlohmann-json3-dev libcli11-dev)
+build_packages=(g++ cmake ninja-build git ca-certificates libcgal-dev libtbb-dev tao-pegtl-dev libmpfi-dev nlohmann-json3-dev libcli11-dev)
 
 # The checkout may belong to somebody else (a container's mount): git would refuse to tell its commit.
 export GIT_CONFIG_COUNT=1 GIT_CONFIG_KEY_0=safe.directory GIT_CONFIG_VALUE_0=$(pwd -P)

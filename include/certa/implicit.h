@@ -134,6 +134,7 @@ const char* name_of(ImplicitObstacle::Reason reason);
 struct ImplicitOptions {
     std::uint64_t max_cells = 8'000'000;          ///< cells of the octree; about 100 bytes each, 500 near the surface
     std::optional<int> max_depth = std::nullopt;  ///< of the octree; automatic: as deep as doubles carry, at most 29
+    bool certificate = false;                     ///< write ImplicitResult::certificate
 };
 
 /// A connected component of the surface.
@@ -159,6 +160,7 @@ struct ImplicitResult {
     std::size_t obstacle_count = 0;
     Point3 low, high;  ///< the box of the proof: that of the caller, enlarged by at most 2^-20 of its size
     ImplicitStatistics statistics;
+    std::string certificate;  ///< JSON (docs/formats.md) for check_implicit; empty unless asked for and decided
 };
 
 /// Meshes {f = 0} in a box with certified topology.
@@ -175,5 +177,28 @@ struct ImplicitResult {
 /// Source:     thesis, Part III; conditions and growth as in docs/implicit-theorem.md.
 ImplicitResult mesh_implicit(const Expression& function, const Point3& low, const Point3& high,
                              const ImplicitOptions& options = {}, const RunControl& control = {});
+
+/// What an independent reading of a certificate finds.
+struct ImplicitCheck {
+    std::vector<std::string> violations;  ///< at most 100 are kept; what is claimed and not proved, with its place
+    std::size_t violation_count = 0;
+    ImplicitVerdict verdict = ImplicitVerdict::undecided;  ///< proved by the check: certified, empty; else undecided
+    std::vector<int> genera;                               ///< per component of the mesh, sorted
+    std::size_t leaves_checked = 0, marks_checked = 0, triangles_checked = 0;
+    bool ok() const { return violation_count == 0; }
+};
+
+/// Decides whether a certificate proves that a mesh is isotopic to the zero set of a function.
+///
+/// Input:      the mesh as its doubles stand, vertices in the order of the certificate; the function's text, read by
+/// the
+///             checker's own reader; a certificate of mesh_implicit.
+/// Result:     a cancelled check counts as one violation: nothing is proved.
+/// Guarantee:  every condition of docs/implicit-theorem.md is decided anew: enclosures by MPFI, octree, triangulation,
+/// replay of
+///             the marks, degrees, components, and exact positions. Shares no code with mesh_implicit.
+/// Cost:       some times that of mesh_implicit; deterministic.
+ImplicitCheck check_implicit(const TriangleMesh& mesh, std::string_view function, std::string_view certificate,
+                             const RunControl& control = {});
 
 }  // namespace certa

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/assert.h"
+#include "implicit/certificate.h"
 #include "implicit/clusters.h"
 #include "implicit/conditions.h"
 #include "implicit/growth.h"
@@ -21,7 +22,12 @@ namespace {
 class Engine {
 public:
     Engine(const Expression& function, const Grid& grid, const ImplicitOptions& options, const RunControl& control)
-        : tape_(function), tree_(grid), field_(tape_), control_(control) {
+        : function_(function),
+          tape_(function),
+          tree_(grid),
+          field_(tape_),
+          control_(control),
+          certificate_(options.certificate) {
         limits_.max_cells = options.max_cells;
         limits_.max_depth = std::min(options.max_depth.value_or(tree_.max_depth()), tree_.max_depth());
     }
@@ -40,7 +46,7 @@ public:
             const Growth growth = grow(triangulation);
             const Findings findings = check_conditions(tree_, triangulation, growth, clusters, tape_, control_);
             if (findings.offenders.empty()) {
-                conclude(triangulation, findings);
+                conclude(triangulation, growth, findings);
                 return std::move(result_);
             }
             if (const auto obstacle = split_all(tree_, findings.offenders, tape_, limits_, control_))
@@ -74,7 +80,7 @@ private:
         return std::move(result_);
     }
 
-    void conclude(const Triangulation& triangulation, const Findings& findings) {
+    void conclude(const Triangulation& triangulation, const Growth& growth, const Findings& findings) {
         count();
         Surface surface = build_surface(tree_, triangulation, findings, field_);
         result_.statistics.tetrahedra = triangulation.tetrahedra().size();
@@ -86,14 +92,19 @@ private:
                 {1 - component.euler / 2, component.inner_sign, component.degree,
                  component.parent == none ? std::nullopt : std::optional<std::uint32_t>(component.parent)});
         }
+        if (certificate_)
+            result_.certificate =
+                write_certificate(function_, tree_, triangulation, growth, surface, result_.components);
         result_.mesh = std::move(surface.mesh);
         result_.triangle_components = std::move(surface.component_of_triangle);
     }
 
+    Expression function_;
     expression::Tape tape_;
     Octree tree_;
     Field field_;
     const RunControl& control_;
+    bool certificate_;
     Limits limits_;
     std::vector<Triangulation::PointSign> signs_;
     ImplicitResult result_;

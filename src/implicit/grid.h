@@ -45,6 +45,11 @@ public:
         return box;
     }
 
+    /// The box is [first, first + count] 2^exponent on each axis.
+    const std::array<std::int64_t, 3>& first() const { return first_; }
+    const std::array<std::int64_t, 3>& count() const { return count_; }
+    const std::array<int, 3>& exponent() const { return exponent_; }
+
 private:
     /// (first_ 2^resolution + count_ i + count_ more / 2^bits) 2^(exponent_ - resolution).
     double scaled(int axis, Coordinate i, std::int64_t more, int bits) const {

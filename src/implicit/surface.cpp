@@ -82,6 +82,7 @@ private:
         if (id != no_index) return id;
         id = static_cast<std::uint32_t>(surface_.mesh.positions.size());
         vertices_.set(a, b, id);
+        surface_.vertex_edges.push_back({a, b});
         surface_.mesh.positions.push_back(place(tree_.points()[a], tree_.points()[b], t_.sign(a)));
         return id;
     }

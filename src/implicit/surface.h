@@ -2,6 +2,7 @@
 // The surface of sign changes as a triangle mesh whose vertices lie exactly on edges of T.
 #include <certa/mesh.h>
 
+#include <array>
 #include <vector>
 
 #include "implicit/conditions.h"
@@ -9,8 +10,9 @@
 namespace certa::implicit {
 
 struct Surface {
-    TriangleMesh mesh;                                 ///< faces towards f > 0
-    std::vector<std::uint32_t> component_of_triangle;  ///< position in Findings::components
+    TriangleMesh mesh;                                       ///< faces towards f > 0
+    std::vector<std::uint32_t> component_of_triangle;        ///< position in Findings::components
+    std::vector<std::array<std::uint32_t, 2>> vertex_edges;  ///< per vertex: the points of T whose edge carries it
 };
 
 /// Definition: marching tetrahedra. The vertex of an edge with both signs is a + (b - a) k / 2^m with 0 < k < 2^m near

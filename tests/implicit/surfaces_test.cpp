@@ -35,7 +35,7 @@ struct Known {
 void PrintTo(const Known& known, std::ostream* out) { *out << known.name; }
 
 void check_known(const Known& known) {
-    const ImplicitResult result = mesh(known.text, known.low, known.high);
+    const ImplicitResult result = mesh(known.text, known.low, known.high, {.certificate = true});
     ASSERT_EQ(result.verdict, ImplicitVerdict::certified) << name_of(result.obstacles.front().reason);
     EXPECT_EQ(result.outcome, Outcome::done);
     EXPECT_EQ(sorted_genera(result), known.genera);
@@ -44,6 +44,9 @@ void check_known(const Known& known) {
     EXPECT_EQ(measured.genera, known.genera);
     EXPECT_EQ(result.triangle_components.size(), result.mesh.triangles.size());
     for (const ImplicitComponent& c : result.components) EXPECT_EQ(c.degree, c.inner_sign * (c.genus - 1));
+    const ImplicitCheck check = check_implicit(result.mesh, known.text, result.certificate);
+    EXPECT_EQ(check.verdict, ImplicitVerdict::certified) << check.violations.front();
+    EXPECT_EQ(check.genera, known.genera);
     // Vertices straddle the zero set: f changes sign within an edge's length.
     const Expression f = parse_expression(known.text);
     double worst = 0;
@@ -121,8 +124,9 @@ TEST(CertifiedSurface, SameBytesForAnyNumberOfThreads) {
 
 TEST(EmptySurface, IsCertified) {
     for (const char* text : {"x^2+y^2+z^2+1", "x^2+y^2+z^2+1e-6", "-1", "exp(x)+y^2", "(x-9)^2+y^2+z^2-1"}) {
-        const ImplicitResult result = mesh(text, -2.03, 1.97);
+        const ImplicitResult result = mesh(text, -2.03, 1.97, {.certificate = true});
         EXPECT_EQ(result.verdict, ImplicitVerdict::empty) << text;
+        EXPECT_EQ(check_implicit(result.mesh, text, result.certificate).verdict, ImplicitVerdict::empty) << text;
         EXPECT_TRUE(result.mesh.triangles.empty()) << text;
     }
 }

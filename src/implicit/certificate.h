@@ -1,0 +1,19 @@
+#pragma once
+// The certificate of a decided surface: everything that an independent program needs to verify it.
+#include <certa/implicit.h>
+
+#include <string>
+#include <vector>
+
+#include "implicit/growth.h"
+#include "implicit/surface.h"
+
+namespace certa::implicit {
+
+/// JSON as docs/formats.md describes it: function, grid, octree with what is claimed of each leaf, signs that no leaf
+/// gives, the order of marks, the edges that carry the mesh's vertices, components.
+std::string write_certificate(const Expression& function, const Octree& tree, const Triangulation& triangulation,
+                              const Growth& growth, const Surface& surface,
+                              const std::vector<ImplicitComponent>& components);
+
+}  // namespace certa::implicit

@@ -1,0 +1,440 @@
+// The public checker of implicit surfaces: reads function and certificate, decides every condition of
+// docs/implicit-theorem.md anew, then the mesh.
+//
+// Plan: claims of leaves (parallel); signs; replay of the marks; tetrahedra with both signs; frontier faces (parallel);
+// degrees of clusters; components of W and of its complement, and the balance between them; the mesh
+// (implicit_mesh.cpp).
+#include <certa/implicit.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <numeric>
+#include <set>
+
+#include "core/parallel.h"
+#include "verify/implicit_complex.h"
+#include "verify/implicit_function.h"
+#include "verify/implicit_mesh.h"
+#include "verify/report.h"
+
+namespace certa::verify {
+namespace {
+
+using Tet = ImplicitComplex::Tet;
+
+/// Disjoint sets.
+class Parts {
+public:
+    explicit Parts(std::size_t count) : up_(count) { std::iota(up_.begin(), up_.end(), 0u); }
+    std::uint32_t of(std::uint32_t i) {
+        while (up_[i] != i) i = up_[i] = up_[up_[i]];
+        return i;
+    }
+    void join(std::uint32_t a, std::uint32_t b) { up_[of(a)] = of(b); }
+
+private:
+    std::vector<std::uint32_t> up_;
+};
+
+class Check {
+public:
+    Check(const ImplicitFunction& function, const ImplicitComplex& complex, const RunControl& control,
+          ImplicitCheck& result)
+        : function_(function), c_(complex), control_(control), result_(result), marked_(complex.points().size(), 0) {}
+
+    void run() {
+        if (!c_.contradiction.empty()) add(c_.contradiction);
+        check_leaves();
+        index_stars();
+        replay_marks();
+        check_mixed();
+        check_frontier();
+        if (result_.violation_count == 0) check_balance();
+    }
+    const std::vector<char>& marked() const { return marked_; }
+
+private:
+    void add(const std::string& text) {
+        ++result_.violation_count;
+        if (result_.violations.size() < 100) result_.violations.push_back(text);
+    }
+    std::string show_leaf(const ClaimedLeaf& leaf) const {
+        const BoxOfDoubles box =
+            c_.box(leaf.low, {leaf.low[0] + leaf.size, leaf.low[1] + leaf.size, leaf.low[2] + leaf.size});
+        return "the leaf from " + show(Point3{box.low[0], box.low[1], box.low[2]}) + " to " +
+               show(Point3{box.high[0], box.high[1], box.high[2]});
+    }
+    std::string show_point(std::uint32_t p) const {
+        const auto at = c_.place(p);
+        return show(Point3{at[0], at[1], at[2]});
+    }
+
+    void check_leaves() {
+        std::vector<std::string> problems(c_.leaves().size());
+        core::parallel_for(c_.leaves().size(), 64, control_, [&](std::size_t begin, std::size_t end) {
+            Enclosures enclosures(function_);
+            for (std::size_t i = begin; i < end && !control_.cancelled(); ++i)
+                problems[i] = problem_of(c_.leaves()[i], enclosures);
+        });
+        for (const std::string& problem : problems) {
+            if (!problem.empty()) add(problem);
+        }
+        if (control_.cancelled()) add("the check was cancelled");
+        result_.leaves_checked = c_.leaves().size();
+    }
+
+    std::string problem_of(const ClaimedLeaf& leaf, Enclosures& enclosures) const {
+        const Lattice high{leaf.low[0] + leaf.size, leaf.low[1] + leaf.size, leaf.low[2] + leaf.size};
+        const BoxOfDoubles box = c_.box(leaf.low, high);
+        if (leaf.sign == 0 && leaf.slope == 0) return show_leaf(leaf) + " claims nothing";
+        if (leaf.sign == 0 && (c_.on_boundary(leaf.low) || c_.on_boundary(high)))
+            return show_leaf(leaf) + " touches the box and claims no sign";
+        if (leaf.sign != 0 && !enclosures.proves_sign(box, leaf.sign))
+            return "the sign of f is not proved on " + show_leaf(leaf);
+        if (leaf.slope != 0 && !enclosures.proves_slope(box, leaf.axis, leaf.slope))
+            return "the slope of f is not proved on " + show_leaf(leaf);
+        return {};
+    }
+
+    void index_stars() {
+        star_first_.assign(c_.points().size() + 1, 0);
+        for (const Tet& t : c_.tets()) {
+            for (const std::uint32_t p : t) ++star_first_[p + 1];
+        }
+        std::partial_sum(star_first_.begin(), star_first_.end(), star_first_.begin());
+        star_.resize(star_first_.back());
+        std::vector<std::uint32_t> next(star_first_.begin(), star_first_.end() - 1);
+        for (std::uint32_t i = 0; i < c_.tets().size(); ++i) {
+            for (const std::uint32_t p : c_.tets()[i]) star_[next[p]++] = i;
+        }
+    }
+
+    void replay_marks() {
+        for (const std::uint32_t p : c_.marks) {
+            if (marked_[p]) add("a point is marked twice: " + show_point(p));
+            if (!may_join(p)) add("a mark adds no cone over a contractible set, at " + show_point(p));
+            marked_[p] = 1;
+        }
+        result_.marks_checked = c_.marks.size();
+    }
+
+    /// The link of p falls into points of the other sign or marked, and the rest: each must be non-empty and connected.
+    bool may_join(std::uint32_t p) {
+        if (c_.on_boundary(c_.points()[p])) return false;
+        std::map<std::uint32_t, std::vector<std::uint32_t>> neighbours;
+        for (std::uint32_t k = star_first_[p]; k < star_first_[p + 1]; ++k) {
+            if (c_.leaves()[c_.leaf_of_tet()[star_[k]]].is_critical()) return false;
+            const Tet& t = c_.tets()[star_[k]];
+            for (const std::uint32_t a : t) {
+                for (const std::uint32_t b : t) {
+                    if (a != p && b != p && a != b) neighbours[a].push_back(b);
+                }
+            }
+        }
+        const auto inside = [&](std::uint32_t a) { return c_.sign[a] != c_.sign[p] || marked_[a] != 0; };
+        int parts[2] = {0, 0};
+        std::set<std::uint32_t> seen;
+        for (const auto& [start, around] : neighbours) {
+            if (!seen.insert(start).second) continue;
+            ++parts[inside(start) ? 1 : 0];
+            std::vector<std::uint32_t> work{start};
+            while (!work.empty()) {
+                const std::uint32_t a = work.back();
+                work.pop_back();
+                for (const std::uint32_t b : neighbours.at(a)) {
+                    if (inside(a) == inside(b) && seen.insert(b).second) work.push_back(b);
+                }
+            }
+        }
+        return parts[0] == 1 && parts[1] == 1;
+    }
+
+    bool is_mixed(const Tet& t) const {
+        return std::any_of(t.begin(), t.end(), [&](std::uint32_t p) { return c_.sign[p] != c_.sign[t[0]]; });
+    }
+
+    void check_mixed() {
+        for (const Tet& t : c_.tets()) {
+            if (!is_mixed(t)) continue;
+            for (const std::uint32_t p : t) {
+                if (!marked_[p]) {
+                    add("a tetrahedron with both signs is not in W, at " + show_point(p));
+                    break;
+                }
+            }
+        }
+    }
+
+    void check_frontier() {
+        std::set<std::vector<std::uint32_t>> faces;
+        for (std::size_t i = 0; i < c_.tets().size(); ++i) {
+            if (c_.leaves()[c_.leaf_of_tet()[i]].sign != 0) continue;  // proved with the leaf
+            std::vector<std::uint32_t> face;
+            for (const std::uint32_t p : c_.tets()[i]) {
+                if (marked_[p]) face.push_back(p);
+            }
+            if (face.empty() || face.size() == 4 || is_mixed(c_.tets()[i])) continue;
+            std::sort(face.begin(), face.end());
+            faces.insert(face);
+        }
+        const std::vector<std::vector<std::uint32_t>> list(faces.begin(), faces.end());
+        std::vector<char> holds(list.size(), 0);
+        core::parallel_for(list.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
+            Enclosures enclosures(function_);
+            for (std::size_t i = begin; i < end && !control_.cancelled(); ++i) {
+                Lattice low = c_.points()[list[i][0]], high = low;
+                for (const std::uint32_t p : list[i]) {
+                    for (std::size_t a = 0; a < 3; ++a) {
+                        low[a] = std::min(low[a], c_.points()[p][a]);
+                        high[a] = std::max(high[a], c_.points()[p][a]);
+                    }
+                }
+                holds[i] = enclosures.proves_sign(c_.box(low, high), c_.sign[list[i][0]]) ? 1 : 0;
+            }
+        });
+        for (std::size_t i = 0; i < list.size(); ++i) {
+            if (!holds[i]) add("the sign of f is not proved on a face of W, at " + show_point(list[i][0]));
+        }
+    }
+
+    // ---- Degrees ----------------------------------------------------------------------------------------------------
+
+    /// An oriented square of the boundary of the critical leaves of one cluster.
+    struct Patch {
+        std::array<std::uint32_t, 4> corners;
+        int axis, slope;
+    };
+
+    /// Critical leaves that share a point of T; each cluster with its squares.
+    void check_balance() {
+        Parts clusters(c_.points().size());
+        for (std::size_t i = 0; i < c_.tets().size(); ++i) {
+            if (!c_.leaves()[c_.leaf_of_tet()[i]].is_critical()) continue;
+            for (const std::uint32_t p : c_.tets()[i]) clusters.join(p, c_.tets()[i][0]);
+        }
+        std::map<std::uint32_t, std::vector<Triangle3>> boundaries;  // per cluster
+        collect_boundaries(clusters, boundaries);
+        find_regions();
+        std::map<std::uint32_t, long> degree_of_region;
+        for (const auto& [cluster, triangles] : boundaries) {
+            const std::uint32_t region = regions_->of(cluster);
+            if (region != outside_) degree_of_region[region] += degree_of(triangles);
+        }
+        balance(degree_of_region);
+    }
+
+    /// A triangle of T between a critical and a regular leaf, counter-clockwise seen from the regular side, with what
+    /// the regular leaf claims of the derivatives there.
+    struct Triangle3 {
+        std::array<std::uint32_t, 3> corners;
+        int axis, slope;
+    };
+
+    void collect_boundaries(Parts& clusters, std::map<std::uint32_t, std::vector<Triangle3>>& boundaries) {
+        // Each tetrahedron has one triangle on the surface of its leaf: the one without the leaf's centre.
+        std::map<std::array<std::uint32_t, 3>, std::uint32_t> critical;
+        for (std::uint32_t i = 0; i < c_.tets().size(); ++i) {
+            if (c_.leaves()[c_.leaf_of_tet()[i]].is_critical()) critical.emplace(surface_key(c_.tets()[i]), i);
+        }
+        for (std::uint32_t i = 0; i < c_.tets().size(); ++i) {
+            const ClaimedLeaf& leaf = c_.leaves()[c_.leaf_of_tet()[i]];
+            if (leaf.is_critical()) continue;
+            const auto found = critical.find(surface_key(c_.tets()[i]));
+            if (found == critical.end()) continue;
+            const Tet& t = c_.tets()[found->second];
+            // (t1, t2, t3) is counter-clockwise seen from outside the critical leaf, its centre t0 being behind.
+            boundaries[clusters.of(t[0])].push_back({{t[1], t[2], t[3]}, leaf.axis, leaf.slope});
+        }
+    }
+    static std::array<std::uint32_t, 3> surface_key(const Tet& t) {
+        std::array<std::uint32_t, 3> key{t[1], t[2], t[3]};
+        std::sort(key.begin(), key.end());
+        return key;
+    }
+
+    /// The degree by the preimages of -z: triangles with slope (z, -) make P; on its boundary, crossings of x > 0 make
+    /// A; ends of A with y > 0 count. The orientation around -z is the opposite of that around +z, hence the sign.
+    long degree_of(const std::vector<Triangle3>& triangles) {
+        struct Edge {
+            long times = 0;
+            int x = 0, y = 0;
+        };
+        std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
+        for (const Triangle3& t : triangles) {
+            for (std::size_t i = 0; i < 3; ++i) {
+                const std::uint32_t a = t.corners[i], b = t.corners[(i + 1) % 3];
+                Edge& edge = edges[{std::min(a, b), std::max(a, b)}];
+                if (t.axis == 2 && t.slope < 0) edge.times += a < b ? 1 : -1;
+                if (t.axis == 0) edge.x = t.slope;
+                if (t.axis == 1) edge.y = t.slope;
+            }
+        }
+        std::map<std::uint32_t, long> ends;
+        std::map<std::uint32_t, int> y_at;
+        for (const auto& [key, edge] : edges) {
+            if (edge.times == 0) continue;
+            if (edge.x == 0 && edge.y == 0) add("the boundary of a cluster is not covered by slopes");
+            if (edge.x > 0) {
+                ends[key.second] += edge.times;
+                ends[key.first] -= edge.times;
+            }
+            if (edge.x == 0) y_at[key.first] = y_at[key.second] = edge.y;
+        }
+        long degree = 0;
+        for (const auto& [point, times] : ends) {
+            if (times == 0) continue;
+            const auto found = y_at.find(point);
+            if (found == y_at.end())
+                add("the boundary of a cluster is not covered by slopes");
+            else if (found->second > 0)
+                degree -= times;
+        }
+        return degree;
+    }
+
+    // ---- Regions and components -------------------------------------------------------------------------------------
+
+    void find_regions() {
+        regions_ = std::make_unique<Parts>(c_.points().size());
+        for (const Tet& t : c_.tets()) {
+            for (const std::uint32_t a : t) {
+                for (const std::uint32_t b : t) {
+                    if (marked_[a] == marked_[b])
+                        regions_->join(a, b);  // components of W beside those of its complement
+                }
+            }
+        }
+        outside_ = regions_->of(c_.find({0, 0, 0}));
+    }
+
+    struct Component {
+        long edges = 0, half_triangles = 0, tets = 0;
+        std::set<std::uint32_t> regions;
+    };
+
+    void balance(std::map<std::uint32_t, long>& degree_of_region) {
+        std::map<std::uint32_t, Component> components;
+        std::set<std::pair<std::uint32_t, std::uint32_t>> mixed_edges;
+        std::map<std::uint32_t, int> sign_of_region;
+        for (const Tet& t : c_.tets()) {
+            for (const std::uint32_t p : t) {
+                if (marked_[p])
+                    components[regions_->of(p)];
+                else
+                    sign_of_region[regions_->of(p)] = c_.sign[p];
+            }
+            note(t, components, mixed_edges);
+        }
+        for (const auto& [a, b] : mixed_edges) ++components.at(regions_->of(a)).edges;
+        std::set<std::uint32_t> done;
+        for (auto& [id, component] : components) {
+            if (component.regions.size() != 2 || component.tets == 0) {
+                add("a component of W does not have two sides, at " + show_point(id));
+                return;
+            }
+        }
+        inwards(outside_, ImplicitComplex::no_point, components, degree_of_region, sign_of_region, done);
+        if (done.size() != components.size()) add("a component of W is not reached from the outside");
+        std::sort(result_.genera.begin(), result_.genera.end());
+    }
+
+    void note(const Tet& t, std::map<std::uint32_t, Component>& components,
+              std::set<std::pair<std::uint32_t, std::uint32_t>>& mixed_edges) {
+        std::uint32_t component = ImplicitComplex::no_point, region = component;
+        int positive = 0;
+        for (const std::uint32_t p : t) {
+            (marked_[p] ? component : region) = regions_->of(p);
+            positive += c_.sign[p] > 0 ? 1 : 0;
+        }
+        if (component != ImplicitComplex::no_point && region != ImplicitComplex::no_point)
+            components[component].regions.insert(region);
+        if (positive == 0 || positive == 4) return;
+        ++components[component].tets;
+        components[component].half_triangles += positive == 2 ? 4 : 3;
+        for (std::size_t i = 0; i < 4; ++i) {
+            for (std::size_t j = i + 1; j < 4; ++j) {
+                if (c_.sign[t[i]] != c_.sign[t[j]]) mixed_edges.insert(std::minmax(t[i], t[j]));
+            }
+        }
+    }
+
+    /// The degree of everything inside the components that bound a region from within it; checks each on the way.
+    long inwards(std::uint32_t region, std::uint32_t around, std::map<std::uint32_t, Component>& components,
+                 std::map<std::uint32_t, long>& degree_of_region, const std::map<std::uint32_t, int>& sign_of_region,
+                 std::set<std::uint32_t>& done) {
+        long degree = degree_of_region.count(region) != 0 ? degree_of_region.at(region) : 0;
+        for (auto& [id, component] : components) {
+            if (id == around || component.regions.count(region) == 0) continue;
+            if (!done.insert(id).second) {
+                add("a component of W is reached twice");
+                return degree;
+            }
+            const std::uint32_t inner =
+                *component.regions.begin() == region ? *component.regions.rbegin() : *component.regions.begin();
+            const long inside = inwards(inner, id, components, degree_of_region, sign_of_region, done);
+            const long euler = component.edges - component.half_triangles / 2 + component.tets;
+            if (2 * inside != -sign_of_region.at(inner) * euler)
+                add("the degree " + std::to_string(inside) + " does not match the Euler characteristic " +
+                    std::to_string(euler) + ", at " + show_point(id));
+            result_.genera.push_back(static_cast<int>(1 - euler / 2));
+            degree += inside;
+        }
+        return degree;
+    }
+
+    const ImplicitFunction& function_;
+    const ImplicitComplex& c_;
+    const RunControl& control_;
+    ImplicitCheck& result_;
+    std::vector<char> marked_;
+    std::vector<std::uint32_t> star_first_, star_;
+    std::unique_ptr<Parts> regions_;
+    std::uint32_t outside_ = 0;
+};
+
+void check(const TriangleMesh& mesh, std::string_view text, std::string_view certificate_text,
+           const RunControl& control, ImplicitCheck& result) {
+    const ImplicitFunction function(text);
+    const ImplicitCertificate certificate = read_certificate(certificate_text);
+    const ImplicitComplex complex(certificate);
+    Check(function, complex, control, result).run();
+    const std::vector<std::int64_t> genera(result.genera.begin(), result.genera.end());
+    if (result.violation_count == 0 && genera != certificate.genera) {
+        ++result.violation_count;
+        result.violations.push_back("the certificate names other genera");
+    }
+    for (std::string& problem : check_mesh_on_complex(mesh, complex, certificate)) {
+        ++result.violation_count;
+        if (result.violations.size() < 100) result.violations.push_back(std::move(problem));
+    }
+    result.triangles_checked = mesh.triangles.size();
+}
+
+}  // namespace
+}  // namespace certa::verify
+
+namespace certa {
+
+ImplicitCheck check_implicit(const TriangleMesh& mesh, std::string_view function, std::string_view certificate,
+                             const RunControl& control) {
+    ImplicitCheck result;
+    const auto refuse = [&](const std::string& reason) {
+        ++result.violation_count;
+        result.violations.push_back(reason);
+    };
+    try {
+        verify::check(mesh, function, certificate, control, result);
+    } catch (const verify::UnreadableFunction& error) {
+        refuse(std::string("the function cannot be read: ") + error.what());
+    } catch (const verify::UnreadableCertificate& error) {
+        refuse(std::string("the certificate cannot be read: ") + error.what());
+    }
+    if (result.ok())
+        result.verdict = result.genera.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
+    else
+        result.genera.clear();
+    return result;
+}
+
+}  // namespace certa

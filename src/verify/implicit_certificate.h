@@ -1,0 +1,29 @@
+#pragma once
+// The checker's reading of certificates of implicit surfaces.
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace certa::verify {
+
+/// A certificate that cannot be read.
+class UnreadableCertificate : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+struct ImplicitCertificate {
+    std::string function, octree;
+    std::array<std::int64_t, 3> first{}, count{}, exponent{};
+    std::int64_t resolution = 0;
+    std::vector<std::int64_t> negative_points, marks, vertex_edges, genera;
+};
+
+/// Reads the JSON of docs/formats.md: an object of strings, integers, arrays of integers and one object of such.
+/// Errors: UnreadableCertificate, also for keys that are missing, unknown or given twice.
+ImplicitCertificate read_certificate(std::string_view text);
+
+}  // namespace certa::verify

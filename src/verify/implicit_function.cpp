@@ -1,0 +1,290 @@
+// Value and gradient of a function over boxes with MPFI, whose rounding is that of MPFR: correct in both directions,
+// whatever the processor's mode. Domains are asked before MPFI is: what it answers beyond them does not matter.
+//
+// The mesher proves signs with second derivatives; here the box is cut into eight instead, a few times, where value and
+// mean value do not suffice. Slower, but another argument.
+#include "verify/implicit_function.h"
+
+namespace certa::verify {
+namespace {
+
+using Kind = ImplicitFunction::Kind;
+constexpr mpfr_prec_t precision = 100;
+constexpr int deepest = 5;
+
+int sign_of(mpfi_srcptr a) {
+    return mpfi_nan_p(a) ? 0 : mpfi_is_strictly_pos(a) ? 1 : mpfi_is_strictly_neg(a) ? -1 : 0;
+}
+
+}  // namespace
+
+Enclosures::Enclosures(const ImplicitFunction& function) : function_(function), values_(function.steps().size()) {
+    for (Values& v : values_) {
+        mpfi_init2(v.value, precision);
+        for (auto& slope : v.slope) {
+            mpfi_init2(slope, precision);
+            mpfi_set_ui(slope, 0);
+        }
+    }
+    for (auto& p : place_) mpfi_init2(p, precision);
+    for (std::size_t i = 0; i < values_.size(); ++i) set_constant(function.steps()[i], values_[i]);
+    mpfi_init2(outer_, precision);
+    mpfi_init2(t_, precision);
+    mpfi_init2(u_, precision);
+    mpfi_init2(sum_, precision);
+}
+
+Enclosures::~Enclosures() {
+    for (Values& v : values_) {
+        mpfi_clear(v.value);
+        for (auto& slope : v.slope) mpfi_clear(slope);
+    }
+    for (auto& p : place_) mpfi_clear(p);
+    mpfi_clear(outer_);
+    mpfi_clear(t_);
+    mpfi_clear(u_);
+    mpfi_clear(sum_);
+}
+
+void Enclosures::evaluate(const std::array<mpfi_t, 3>& place, bool with_slopes) {
+    const auto& steps = function_.steps();
+    for (std::size_t i = 0; i < steps.size(); ++i) {
+        const auto& step = steps[i];
+        Values& r = values_[i];
+        r.defined = r.smooth = true;
+        switch (step.kind) {
+            case Kind::number:
+            case Kind::pi:
+                r.defined = r.constant_read;
+                break;
+            case Kind::variable:
+                mpfi_set(r.value, place[static_cast<std::size_t>(step.n)]);
+                mpfi_set_ui(r.slope[static_cast<std::size_t>(step.n)], 1);
+                break;
+            case Kind::sum:
+            case Kind::difference:
+            case Kind::product:
+            case Kind::quotient:
+            case Kind::real_power:
+                binary(step, values_[step.a], values_[step.b], r, with_slopes);
+                break;
+            default:
+                unary(step, values_[step.a], r, with_slopes);
+        }
+        if (mpfi_nan_p(r.value)) r.defined = false;
+        if (!r.defined) r.smooth = false;
+    }
+}
+
+/// Numbers are enclosed once, by MPFR's correctly rounded reading of their digits.
+void Enclosures::set_constant(const ImplicitFunction::Step& step, Values& r) {
+    if (step.kind == Kind::number) r.constant_read = mpfi_set_str(r.value, step.text.c_str(), 10) == 0;
+    if (step.kind == Kind::pi) r.constant_read = mpfi_const_pi(r.value) >= 0;
+}
+
+/// base^n: monotone for odd n and on the sizes for even n, so the ends give the ends.
+void Enclosures::raise(mpfi_ptr result, mpfi_srcptr base, long n) {
+    const auto size = static_cast<unsigned long>(n < 0 ? -n : n);
+    if (size % 2 == 0)
+        mpfi_abs(result, base);
+    else
+        mpfi_set(result, base);
+    mpfr_pow_ui(&result->left, &result->left, size, MPFR_RNDD);
+    mpfr_pow_ui(&result->right, &result->right, size, MPFR_RNDU);
+    if (n < 0) mpfi_inv(result, result);
+}
+
+void Enclosures::unary(const ImplicitFunction::Step& step, const Values& a, Values& r, bool with_slopes) {
+    r.defined = a.defined;
+    r.smooth = a.smooth;
+    if (!r.defined) return;
+    mpfi_set_ui(outer_, 1);  // the outer derivative
+    switch (step.kind) {
+        case Kind::negative:
+            mpfi_neg(r.value, a.value);
+            mpfi_set_si(outer_, -1);
+            break;
+        case Kind::power:
+            if (step.n < 0 && mpfi_has_zero(a.value)) {
+                r.defined = false;
+                return;
+            }
+            raise(r.value, a.value, step.n);
+            if (with_slopes && step.n != 0) {
+                if (step.n - 1 < 0 && mpfi_has_zero(a.value))
+                    r.smooth = false;
+                else
+                    raise(outer_, a.value, step.n - 1);
+                mpfi_mul_si(outer_, outer_, step.n);
+            } else {
+                mpfi_set_ui(outer_, 0);
+            }
+            break;
+        case Kind::root:
+            r.defined = mpfi_is_nonneg(a.value) != 0;
+            if (!r.defined) return;
+            mpfi_sqrt(r.value, a.value);
+            if (!mpfi_is_strictly_pos(a.value)) {
+                r.smooth = false;
+            } else {
+                mpfi_mul_ui(outer_, r.value, 2);
+                mpfi_inv(outer_, outer_);
+            }
+            break;
+        case Kind::exponential:
+            mpfi_exp(r.value, a.value);
+            mpfi_set(outer_, r.value);
+            break;
+        case Kind::logarithm:
+            r.defined = mpfi_is_strictly_pos(a.value) != 0;
+            if (!r.defined) return;
+            mpfi_log(r.value, a.value);
+            mpfi_inv(outer_, a.value);
+            break;
+        case Kind::sine:
+            mpfi_sin(r.value, a.value);
+            mpfi_cos(outer_, a.value);
+            break;
+        case Kind::cosine:
+            mpfi_cos(r.value, a.value);
+            mpfi_sin(outer_, a.value);
+            mpfi_neg(outer_, outer_);
+            break;
+        case Kind::tangent:
+            mpfi_cos(t_, a.value);
+            r.defined = sign_of(t_) != 0;
+            if (!r.defined) return;
+            mpfi_tan(r.value, a.value);
+            mpfi_sqr(outer_, r.value);
+            mpfi_add_ui(outer_, outer_, 1);
+            break;
+        case Kind::arctangent:
+            mpfi_atan(r.value, a.value);
+            mpfi_sqr(outer_, a.value);
+            mpfi_add_ui(outer_, outer_, 1);
+            mpfi_inv(outer_, outer_);
+            break;
+        case Kind::hyperbolic_sine:
+            mpfi_sinh(r.value, a.value);
+            mpfi_cosh(outer_, a.value);
+            break;
+        case Kind::hyperbolic_cosine:
+            mpfi_cosh(r.value, a.value);
+            mpfi_sinh(outer_, a.value);
+            break;
+        default:  // hyperbolic_tangent
+            mpfi_tanh(r.value, a.value);
+            mpfi_sqr(outer_, r.value);
+            mpfi_ui_sub(outer_, 1, outer_);
+    }
+    for (std::size_t i = 0; with_slopes && i < 3; ++i) {
+        if ((step.depends >> i) & 1u) mpfi_mul(r.slope[i], outer_, a.slope[i]);
+    }
+}
+
+void Enclosures::binary(const ImplicitFunction::Step& step, const Values& a, const Values& b, Values& r,
+                        bool with_slopes) {
+    r.defined = a.defined && b.defined;
+    r.smooth = a.smooth && b.smooth;
+    if (!r.defined) return;
+    switch (step.kind) {
+        case Kind::sum:
+            mpfi_add(r.value, a.value, b.value);
+            break;
+        case Kind::difference:
+            mpfi_sub(r.value, a.value, b.value);
+            break;
+        case Kind::product:
+            mpfi_mul(r.value, a.value, b.value);
+            break;
+        case Kind::quotient:
+            r.defined = sign_of(b.value) != 0;
+            if (r.defined) mpfi_div(r.value, a.value, b.value);
+            break;
+        default:  // real_power: exp(b log a), or the root for the exponent one half
+            if (mpfr_cmp_d(&b.value->left, 0.5) == 0 && mpfr_cmp_d(&b.value->right, 0.5) == 0 &&
+                mpfi_is_nonneg(a.value)) {
+                mpfi_sqrt(r.value, a.value);
+                r.smooth = r.smooth && mpfi_is_strictly_pos(a.value);
+            } else {
+                r.defined = sign_of(a.value) > 0;
+                if (!r.defined) return;
+                mpfi_log(t_, a.value);
+                mpfi_mul(t_, t_, b.value);
+                mpfi_exp(r.value, t_);
+            }
+            if (r.smooth) {  // b a^b / a
+                mpfi_div(outer_, r.value, a.value);
+                mpfi_mul(outer_, outer_, b.value);
+            }
+    }
+    for (std::size_t i = 0; with_slopes && r.defined && r.smooth && i < 3; ++i) {
+        if (((step.depends >> i) & 1u) == 0) continue;
+        switch (step.kind) {
+            case Kind::sum:
+                mpfi_add(r.slope[i], a.slope[i], b.slope[i]);
+                break;
+            case Kind::difference:
+                mpfi_sub(r.slope[i], a.slope[i], b.slope[i]);
+                break;
+            case Kind::product:
+                mpfi_mul(t_, a.slope[i], b.value);
+                mpfi_mul(u_, a.value, b.slope[i]);
+                mpfi_add(r.slope[i], t_, u_);
+                break;
+            case Kind::quotient:
+                mpfi_mul(t_, r.value, b.slope[i]);
+                mpfi_sub(t_, a.slope[i], t_);
+                mpfi_div(r.slope[i], t_, b.value);
+                break;
+            default:
+                mpfi_mul(r.slope[i], outer_, a.slope[i]);
+        }
+    }
+}
+
+bool Enclosures::directly(const BoxOfDoubles& box, int axis, int sign) {
+    for (std::size_t i = 0; i < 3; ++i) mpfi_interv_d(place_[i], box.low[i], box.high[i]);
+    evaluate(place_, true);
+    const Values& whole = values_[function_.result()];
+    if (!whole.defined) return false;
+    if (axis >= 0) return whole.smooth && sign_of(whole.slope[static_cast<std::size_t>(axis)]) == sign;
+    if (sign_of(whole.value) == sign) return true;
+    if (!whole.smooth) return false;
+    // f(c) + G(box) (box - c)
+    mpfi_set_ui(sum_, 0);
+    std::array<double, 3> center;
+    for (std::size_t i = 0; i < 3; ++i) {
+        center[i] = box.low[i] / 2 + box.high[i] / 2;
+        mpfi_sub_d(t_, place_[i], center[i]);
+        mpfi_mul(t_, t_, whole.slope[i]);
+        mpfi_add(sum_, sum_, t_);
+    }
+    for (std::size_t i = 0; i < 3; ++i) mpfi_set_d(place_[i], center[i]);
+    evaluate(place_, false);
+    if (!values_[function_.result()].defined) return false;
+    mpfi_add(sum_, sum_, values_[function_.result()].value);
+    return sign_of(sum_) == sign;
+}
+
+bool Enclosures::on_parts(const BoxOfDoubles& box, int axis, int sign, int depth) {
+    if (directly(box, axis, sign)) return true;
+    if (depth == deepest) return false;
+    for (unsigned part = 0; part < 8; ++part) {
+        BoxOfDoubles child = box;
+        bool repeated = false;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double middle = box.low[i] / 2 + box.high[i] / 2;
+            // A side without inside is not cut.
+            if (!(box.low[i] < middle && middle < box.high[i])) {
+                repeated = repeated || ((part >> i) & 1u) != 0;
+                continue;
+            }
+            ((part >> i) & 1u ? child.low : child.high)[i] = middle;
+        }
+        if (!repeated && !on_parts(child, axis, sign, depth + 1)) return false;
+    }
+    return true;
+}
+
+}  // namespace certa::verify

@@ -1,0 +1,102 @@
+#pragma once
+// The checker's own reading of expressions and its own enclosures, by MPFI: shares nothing with src/expression.
+#include <mpfi.h>
+
+#include <array>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace certa::verify {
+
+/// A text that this reader does not accept.
+class UnreadableFunction : public std::runtime_error {
+public:
+    using std::runtime_error::runtime_error;
+};
+
+/// A function of x, y, z as steps that use earlier ones, equal steps once. The language is docs/expressions.md.
+class ImplicitFunction {
+public:
+    enum class Kind : unsigned char {
+        number,
+        pi,
+        variable,
+        negative,
+        sum,
+        difference,
+        product,
+        quotient,
+        power,
+        root,
+        exponential,
+        logarithm,
+        sine,
+        cosine,
+        tangent,
+        arctangent,
+        hyperbolic_sine,
+        hyperbolic_cosine,
+        hyperbolic_tangent,
+        real_power,
+    };
+    struct Step {
+        Kind kind = Kind::number;
+        std::uint32_t a = 0, b = 0;
+        long n = 0;            ///< exponent, or which variable
+        std::string text;      ///< of a number
+        unsigned depends = 0;  ///< bit i: on variable i
+        friend bool operator==(const Step&, const Step&) = default;
+    };
+
+    /// Errors: UnreadableFunction.
+    explicit ImplicitFunction(std::string_view text);
+    const std::vector<Step>& steps() const { return steps_; }
+    std::uint32_t result() const { return result_; }
+
+private:
+    friend class FunctionReader;
+    std::vector<Step> steps_;
+    std::uint32_t result_ = 0;
+};
+
+struct BoxOfDoubles {
+    std::array<double, 3> low, high;
+};
+
+/// One thread's enclosures of one function: value and gradient over boxes, with 100 bits.
+class Enclosures {
+public:
+    explicit Enclosures(const ImplicitFunction& function);
+    Enclosures(const Enclosures&) = delete;
+    Enclosures& operator=(const Enclosures&) = delete;
+    ~Enclosures();
+
+    /// Whether f has this sign on the whole box: by its enclosure, the mean value form, or both on parts of the box.
+    bool proves_sign(const BoxOfDoubles& box, int sign) { return on_parts(box, -1, sign, 0); }
+    /// Whether the derivative by this variable exists and has this sign on the whole box.
+    bool proves_slope(const BoxOfDoubles& box, int axis, int sign) { return on_parts(box, axis, sign, 0); }
+
+private:
+    struct Values {
+        mpfi_t value;
+        std::array<mpfi_t, 3> slope;
+        bool defined = false, smooth = false, constant_read = false;
+    };
+    void evaluate(const std::array<mpfi_t, 3>& place, bool with_slopes);
+    static void set_constant(const ImplicitFunction::Step& step, Values& r);
+    void unary(const ImplicitFunction::Step& step, const Values& a, Values& r, bool with_slopes);
+    void binary(const ImplicitFunction::Step& step, const Values& a, const Values& b, Values& r, bool with_slopes);
+    void raise(mpfi_ptr result, mpfi_srcptr base, long n);
+    bool on_parts(const BoxOfDoubles& box, int axis, int sign, int depth);
+    bool directly(const BoxOfDoubles& box, int axis, int sign);
+
+    const ImplicitFunction& function_;
+    std::vector<Values> values_;
+    std::array<mpfi_t, 3> place_;
+    mpfi_t outer_, t_, u_, sum_;
+};
+
+}  // namespace certa::verify
