@@ -3,6 +3,7 @@
 // Immutable once built; indices equal those of the public result (points, segments, facets).
 #include <certa/mesh.h>
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -47,7 +48,12 @@ struct Complex {
     std::vector<std::int32_t> segment_markers;  // one per segment; 0 where the input gives none
 
     std::vector<std::uint8_t> dropped_segments;  // empty, or one per segment: 1 where merging took a side away
+    std::vector<std::uint32_t> ignored_points;   // sorted: they repeat another point and belong to nothing
     bool is_dropped(std::uint32_t segment) const { return !dropped_segments.empty() && dropped_segments[segment] != 0; }
+
+    bool is_ignored(std::uint32_t point) const {
+        return std::binary_search(ignored_points.begin(), ignored_points.end(), point);
+    }
 
     // Derived incidences.
     Rows<std::uint32_t> point_segments;  // segments that end at a point

@@ -8,11 +8,15 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <memory>
 #include <optional>
+#include <utility>
 
 #include "conforming/build_complex.h"
 #include "conforming/emission.h"
+#include "conforming/engine.h"
 #include "conforming/facet_interior.h"
+#include "conforming/growth.h"
 #include "conforming/local_feature_size.h"
 #include "conforming/merge_coplanar.h"
 #include "conforming/protected_area.h"
@@ -70,15 +74,15 @@ void check_options(const ConformOptions& options) {
 /// What a run is made from, once; restarts begin here.
 struct Prepared {
     Complex complex;
-    std::vector<std::uint32_t> ignored_points;
-    Delaunay3 triangulation;                   // of the input points; moved from by the first attempt
-    std::vector<std::uint8_t> present_facets;  // triangle facets that are faces of it
+    std::optional<Delaunay3> triangulation;    // of the input points; the first attempt takes it
+    std::vector<std::uint8_t> present_facets;  // triangle facets that are faces of it, and marked
 };
 
 class Conformer {
 public:
-    Conformer(const PiecewiseLinearComplex& input, const ConformOptions& options, const RunControl& control)
-        : input_(input), options_(options), control_(control), clock_(result_.statistics) {}
+    Conformer(const PiecewiseLinearComplex& input, const ConformOptions& options, const AttemptLimits& limits,
+              const RunControl& control)
+        : input_(input), options_(options), limits_(limits), control_(control), clock_(result_.statistics) {}
 
     ConformResult run() {
         prepare();
@@ -93,6 +97,7 @@ public:
 private:
     const PiecewiseLinearComplex& input_;
     const ConformOptions& options_;
+    const AttemptLimits& limits_;
     const RunControl& control_;
     ConformResult result_;
     StageClock clock_;
@@ -108,14 +113,15 @@ private:
         }
         Complex& complex = prepared_.complex;
         complex = clock_.run("validate", [&] { return build_complex(input_); });
-        prepared_.ignored_points = structure.ignored_points;
-        std::sort(prepared_.ignored_points.begin(), prepared_.ignored_points.end());
+        complex.ignored_points = structure.ignored_points;
+        std::sort(complex.ignored_points.begin(), complex.ignored_points.end());
         control_.report("delaunay", 0.0);
-        clock_.run("delaunay", [&] { prepared_.triangulation.build(complex.points, prepared_.ignored_points); });
+        clock_.run("delaunay",
+                   [&] { prepared_.triangulation.emplace().build(complex.points, prepared_.complex.ignored_points); });
         clock_.run("survey", [&] { find_present(); });
         control_.report("validate", 0.0);
         validate_places(structure);
-        if (!prepared_.triangulation.is_solid()) {
+        if (!prepared_.triangulation->is_solid()) {
             throw InputError({{DefectKind::empty_input,
                                {},
                                {},
@@ -129,10 +135,10 @@ private:
     void find_present() {
         const Complex& complex = prepared_.complex;
         prepared_.present_facets.assign(complex.frames.size(), 0);
-        if (!prepared_.triangulation.is_solid()) return;
+        if (!prepared_.triangulation->is_solid()) return;
         for (std::uint32_t f = 0; f < complex.frames.size(); ++f) {
             if (const auto t = triangle_of(complex, f)) {
-                prepared_.present_facets[f] = prepared_.triangulation.has_face((*t)[0], (*t)[1], (*t)[2]) ? 1 : 0;
+                prepared_.present_facets[f] = prepared_.triangulation->mark_face((*t)[0], (*t)[1], (*t)[2], f) ? 1 : 0;
             }
         }
     }
@@ -158,22 +164,10 @@ private:
         if (options_.merge_coplanar) {
             MergedComplex merged = merge_coplanar(complex, input_.segments.size());
             complex = std::move(merged.complex);
-            for (std::uint32_t f = 0; f < complex.frames.size(); ++f) {
-                if (!triangle_of(complex, f)) prepared_.present_facets[f] = 0;
-            }
+            complex.dropped_segments = std::move(merged.dropped_segments);
+            prepared_.triangulation->clear_marks();
+            find_present();
         }
-    }
-
-    ProtectedSet first_set() {
-        switch (options_.protection) {
-            case Protection::all:
-                return protect_all(prepared_.complex);
-            case Protection::sharp:
-                return protect_sharp(prepared_.complex, interior());
-            case Protection::needed:
-                break;
-        }
-        return protect_nothing(prepared_.complex);
     }
 
     const FacetInterior& interior() {
@@ -192,33 +186,50 @@ private:
                                    : most;
     }
 
-    /// The points and chains around protected vertices and segments; none when nothing is protected.
+    /// Protecting everything can take millions of points where a complex has slivers; without the user's word, no more
+    /// than this.
+    std::size_t protection_limit() const {
+        if (options_.max_points) return point_limit();
+        return std::max<std::size_t>(1'000'000, 50 * prepared_.complex.points.size());
+    }
+
+    /// The points and chains around protected vertices and segments; none when that exceeds a limit.
     std::optional<ProtectedArea> protect(const ProtectedSet& set) {
+        const Complex& complex = prepared_.complex;
         BallOptions balls;
         balls.alpha = options_.alpha;
-        balls.min_radius = options_.min_feature.resolve(prepared_.complex.diagonal);
-        const std::size_t room = point_limit() - std::min(point_limit(), prepared_.complex.points.size());
-        balls.max_balls = std::min<std::size_t>(20'000'000, prepared_.complex.points.size() + room);
-        const ProtectingBalls built = build_protecting_balls(prepared_.complex, feature_size(), set, balls, control_);
+        balls.min_radius = options_.min_feature.resolve(complex.diagonal);
+        // Each ball inside a segment is a point; those of vertices are points of the input.
+        balls.max_balls = std::max(protection_limit(), complex.points.size());
+        const ProtectingBalls built = build_protecting_balls(complex, feature_size(), set, balls, control_);
         result_.statistics.protecting_balls = built.balls.size();
-        if (built.outcome == Outcome::done) return build_protected_area(prepared_.complex, interior(), built);
         result_.outcome = built.outcome;
         if (built.obstacle) report_ball_obstacle(*built.obstacle);
+        if (built.outcome != Outcome::done) return std::nullopt;
+        ProtectedArea area = build_protected_area(complex, interior(), built);
+        if (complex.points.size() + area.points.size() <= protection_limit()) return area;
+        result_.outcome = Outcome::over_budget;
+        const Ball& last = built.balls.back();
+        const ElementRef face{last.kind == BallKind::vertex ? ElementKind::vertex : ElementKind::segment, last.index};
+        report_ball_obstacle({face, {ElementKind::vertex, no_index}, last.center, last.radius});
         return std::nullopt;
     }
 
     void report_ball_obstacle(const BallObstacle& obstacle) {
         const auto name = [](const ElementRef& e) { return name_element(e.kind, e.index); };
         const bool crowded = result_.outcome == Outcome::over_budget;
+        std::vector<ElementRef> elements{obstacle.protected_face};
         std::string message =
-            crowded ? "too many protecting balls would be needed" : "a protecting ball would be too small";
-        message += " on " + name(obstacle.protected_face) + ", which " + name(obstacle.near_face) + " comes near to " +
-                   name_place(obstacle.place) + ": its radius would be " + name_number(obstacle.radius);
+            crowded ? "too many points would be needed for protecting balls" : "a protecting ball would be too small";
+        message += " on " + name(obstacle.protected_face) + ' ' + name_place(obstacle.place);
+        if (obstacle.near_face.index != no_index) {
+            elements.push_back(obstacle.near_face);
+            message += ", which " + name(obstacle.near_face) + " comes near to";
+        }
+        message += ": its radius would be " + name_number(obstacle.radius);
         message += crowded ? "; simplify the place or raise max_points" : "; simplify the place or lower min_feature";
-        result_.obstacles.push_back({crowded ? DefectKind::point_near_facet : DefectKind::point_near_facet,
-                                     {obstacle.protected_face, obstacle.near_face},
-                                     obstacle.place,
-                                     message});
+        result_.obstacles.push_back(
+            {DefectKind::point_near_facet, std::move(elements), obstacle.place, std::move(message)});
     }
 
     Delaunay3 triangulate(const std::optional<ProtectedArea>& area) {
@@ -228,50 +239,140 @@ private:
             if (area) {
                 for (const NewPoint& p : area->points) points.push_back(p.position);
             }
-            triangulation.build(points, prepared_.ignored_points);
+            triangulation.build(points, prepared_.complex.ignored_points);
             return triangulation;
         });
     }
 
-    void recover() {
-        const bool lazy = options_.protection == Protection::needed;
-        ProtectedSet set = first_set();
-        bool anything = !lazy;
-        MeshState mesh(prepared_.complex);
-        mesh.min_feature = options_.min_feature.resolve(prepared_.complex.diagonal);
-        RecoveryOptions recovery_options;
-        recovery_options.gabriel = options_.gabriel;
-        recovery_options.mirroring = lazy;
-        recovery_options.max_points = point_limit();
-        const PieceRule rule = lazy ? PieceRule::present : PieceRule::gabriel;
-        for (std::size_t attempt = 0;; ++attempt) {
-            std::optional<ProtectedArea> area;
-            if (anything) {
-                control_.report("protect", 0.0);
-                area = clock_.run("protect", [&] { return protect(set); });
-                if (!area) return;
-            }
-            mesh.reset(attempt == 0 && !area ? std::move(prepared_.triangulation) : triangulate(area),
-                       area ? &*area : nullptr, rule);
-            Recovery recovery(mesh, area ? &*area : nullptr, recovery_options, control_);
-            const RecoveryResult end = clock_.run("recover", [&] {
-                return recovery.run(area ? std::span<const std::uint8_t>{} : prepared_.present_facets);
-            });
-            if (attempt == 0) {
-                result_.statistics.missing_segments = end.missing_segments;
-                result_.statistics.missing_facets = end.missing_facets;
-            }
-            result_.statistics.restarts = attempt;
-            result_.outcome = end.outcome;
-            if (end.outcome == Outcome::done) {
-                control_.report("label", 0.0);
-                clock_.run("label", [&] { emit_mesh(mesh, recovery, input_, options_, result_); });
+    /// One way to go about it: what is protected beforehand, and the rules for the rest.
+    struct Plan {
+        ProtectedSet set;
+        bool protects = false;
+        bool lazy = false;  // mirroring and budgets; else the thesis
+        std::size_t restarts = 0;
+        SplitRule rule = SplitRule::copy;
+        std::size_t most_added = 0;  // 0: as many Steiner points as the budgets allow
+    };
+    struct Attempt {
+        Attempt(const Complex& complex, std::optional<ProtectedArea> given, const RecoveryOptions& recovery_options,
+                const RunControl& control)
+            : area(std::move(given)),
+              options(recovery_options),
+              mesh(complex),
+              recovery(mesh, area ? &*area : nullptr, options, control) {}
+        std::optional<ProtectedArea> area;
+        RecoveryOptions options;
+        MeshState mesh;
+        Recovery recovery;
+        RecoveryResult end;
+        std::size_t added() const { return mesh.owners.size(); }
+    };
+
+    Plan first_plan() {
+        const Complex& complex = prepared_.complex;
+        switch (options_.protection) {
+            case Protection::all:
+                return {.set = protect_all(complex), .protects = true};
+            case Protection::sharp:
+                return {.set = protect_sharp(complex, interior()), .protects = true};
+            case Protection::needed:
+                break;
+        }
+        return {.set = protect_nothing(complex), .lazy = true};
+    }
+
+    RecoveryOptions recovery_options(const Plan& plan) const {
+        RecoveryOptions recovery;
+        recovery.gabriel = options_.gabriel;
+        recovery.mirroring = plan.lazy;
+        recovery.split_rule = plan.rule;
+        recovery.max_points = point_limit();
+        if (plan.lazy) {
+            const std::size_t factor = std::size_t{1} << std::min<std::size_t>(plan.restarts, 20);
+            recovery.owner_budget = factor * limits_.owner_budget;
+            recovery.total_budget = factor * (limits_.total_budget + 50 * prepared_.complex.points.size());
+        }
+        if (plan.most_added > 0) recovery.total_budget = plan.most_added;
+        return recovery;
+    }
+
+    /// Nothing where the balls cannot be built; the result says why.
+    std::unique_ptr<Attempt> try_plan(const Plan& plan) {
+        std::optional<ProtectedArea> area;
+        if (plan.protects) {
+            control_.report("protect", 0.0);
+            area = clock_.run("protect", [&] { return protect(plan.set); });
+            if (!area) return nullptr;
+        }
+        auto attempt = std::make_unique<Attempt>(prepared_.complex, std::move(area), recovery_options(plan), control_);
+        const bool pristine = !plan.protects && prepared_.triangulation.has_value();
+        Delaunay3 start = pristine ? *std::exchange(prepared_.triangulation, {}) : triangulate(attempt->area);
+        attempt->mesh.min_feature = options_.min_feature.resolve(prepared_.complex.diagonal);
+        attempt->mesh.reset(std::move(start), attempt->area ? &*attempt->area : nullptr,
+                            plan.lazy ? PieceRule::present : PieceRule::gabriel);
+        attempt->end = clock_.run("recover", [&] {
+            return attempt->recovery.run(pristine ? prepared_.present_facets : std::vector<std::uint8_t>{});
+        });
+        return attempt;
+    }
+
+    /// More protection where the last attempt was stuck; false when there is no more to be had.
+    bool change_plan(Plan& plan, const RecoveryResult& end) {
+        if (!plan.lazy || !end.stuck) return false;
+        ++plan.restarts;
+        if (plan.restarts > limits_.restarts_before_all ||
+            !grow_protected_set(plan.set, prepared_.complex, end.obstructions)) {
+            plan.set = protect_all(prepared_.complex);
+            plan.lazy = false;
+        }
+        plan.protects = true;
+        return true;
+    }
+
+    /// Recovery of small complexes is cheap, and no split rule gives the fewest points everywhere.
+    void try_other_rules(const Plan& plan, std::unique_ptr<Attempt>& best) {
+        if (!plan.lazy || plan.protects || best->end.outcome != Outcome::done) return;
+        if (prepared_.complex.frames.size() > limits_.facets_for_trials || best->added() < limits_.added_for_trials)
+            return;
+        for (const SplitRule rule : {SplitRule::middle_first, SplitRule::shells}) {
+            Plan other = plan;
+            other.rule = rule;
+            other.most_added = best->added() - 1;
+            std::unique_ptr<Attempt> attempt = try_plan(other);
+            if (attempt->end.outcome == Outcome::cancelled) {
+                best = std::move(attempt);
                 return;
             }
-            if (end.outcome == Outcome::cancelled) return;
-            report_obstructions(end);
-            emit_partial(mesh, recovery, result_);
+            if (attempt->end.outcome == Outcome::done && attempt->added() < best->added()) best = std::move(attempt);
+        }
+    }
+
+    void recover() {
+        Plan plan = first_plan();
+        std::unique_ptr<Attempt> attempt = try_plan(plan);
+        if (attempt) {
+            result_.statistics.missing_segments = attempt->end.missing_segments;
+            result_.statistics.missing_facets = attempt->end.missing_facets;
+        }
+        // Without balls there is no next attempt: what the last one had stays, as partial.
+        for (std::unique_ptr<Attempt> next; attempt && change_plan(plan, attempt->end); attempt = std::move(next)) {
+            next = try_plan(plan);
+            if (next == nullptr) break;
+        }
+        result_.statistics.restarts = plan.restarts;
+        if (result_.outcome == Outcome::cancelled) return;
+        if (!attempt || result_.outcome != Outcome::done) {
+            if (attempt) emit_partial(attempt->mesh, attempt->recovery, result_);
             return;
+        }
+        try_other_rules(plan, attempt);
+        result_.outcome = attempt->end.outcome;
+        if (result_.outcome == Outcome::done) {
+            control_.report("label", 0.0);
+            clock_.run("label", [&] { emit_mesh(attempt->mesh, attempt->recovery, input_, options_, result_); });
+        } else if (result_.outcome != Outcome::cancelled) {
+            report_obstructions(attempt->end);
+            emit_partial(attempt->mesh, attempt->recovery, result_);
         }
     }
 
@@ -293,17 +394,23 @@ private:
 };
 
 }  // namespace
+
+ConformResult mesh_complex(const PiecewiseLinearComplex& input, const ConformOptions& options,
+                           const AttemptLimits& limits, const RunControl& control) {
+    check_options(options);
+    std::optional<tbb::global_control> threads;
+    if (control.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, control.threads);
+    return Conformer(input, options, limits, control).run();
+}
+
 }  // namespace conforming
 
 ConformResult conform(const PiecewiseLinearComplex& input, const ConformOptions& options, const RunControl& control) {
-    conforming::check_options(options);
-    std::optional<tbb::global_control> threads;
-    if (control.threads > 0) threads.emplace(tbb::global_control::max_allowed_parallelism, control.threads);
-    if (!options.repair && !options.triangulate) return conforming::Conformer(input, options, control).run();
+    if (!options.repair && !options.triangulate) return conforming::mesh_complex(input, options, {}, control);
     RepairedComplex repaired = repair_complex(input, options, control);
     ConformOptions rest = options;
     rest.repair = rest.triangulate = false;
-    ConformResult result = conforming::Conformer(repaired.complex, rest, control).run();
+    ConformResult result = conforming::mesh_complex(repaired.complex, rest, {}, control);
     result.repairs = std::move(repaired.repairs);
     for (FacetId& f : result.mesh.triangle_facets) f = repaired.facet_sources[index_of(f)];
     for (VertexSource& v : result.mesh.vertex_sources) {

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 
 #include "conforming/validate_messages.h"
@@ -99,19 +100,15 @@ private:
         emit_pieces(false);
     }
 
-    bool is_covered(const Triangle& t) const {
-        const auto beside = mesh_.triangulation.components_beside(index_of(t[0]), index_of(t[1]), index_of(t[2]));
-        // Component 0 holds the infinite cells too: on the hull, the other side is what counts.
-        return (kept_[beside[0]] != 0 && beside[0] != 0) || (kept_[beside[1]] != 0 && beside[1] != 0) || kept_[0] != 0;
-    }
+    bool is_kept(std::uint32_t component) const { return component != no_index && kept_[component] != 0; }
 
     /// Whether all constraints have a tetrahedron; collects the components beside those that have none.
     bool all_covered(std::vector<std::uint32_t>& beside_bare) const {
         beside_bare.clear();
-        for (const Triangle& t : result_.mesh.triangles) {
-            if (is_covered(t)) continue;
-            const auto beside = mesh_.triangulation.components_beside(index_of(t[0]), index_of(t[1]), index_of(t[2]));
-            beside_bare.insert(beside_bare.end(), beside.begin(), beside.end());
+        for (const auto& wall : cells_.walls) {
+            if (is_kept(wall[0]) || is_kept(wall[1])) continue;
+            std::copy_if(wall.begin(), wall.end(), std::back_inserter(beside_bare),
+                         [](std::uint32_t c) { return c != no_index; });
         }
         std::vector<std::uint32_t> around;
         for (std::size_t e = 0; e < result_.mesh.edges.size(); ++e) {

@@ -136,7 +136,9 @@ FacetInterior build_facet_interior(const Complex& complex) {
     FacetInterior result;
     result.side_covers.reserve(complex.facet_sides.values.size());
     for (std::uint32_t f = 0; f < complex.facet_sides.size(); ++f) {
-        if (const auto triangle = triangle_of(complex, f)) {
+        if (complex.facet_sides[f].empty()) {
+            result.triangles.push_row({});  // merged into another one
+        } else if (const auto triangle = triangle_of(complex, f)) {
             cover_triangle(complex, f, *triangle, result);
         } else {
             cover_region(complex, f, result);

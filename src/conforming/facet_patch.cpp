@@ -20,8 +20,8 @@ using Corners = std::array<std::uint32_t, 3>;
 // chord (i, j), whose third corner must be one of the vertices that the mesh links to that chord.
 class TieSolver {
 public:
-    TieSolver(const MeshState& mesh, const FacetPatch& patch, const std::vector<std::uint32_t>& polygon)
-        : mesh_(mesh), patch_(patch), polygon_(polygon) {
+    TieSolver(const MeshState& mesh, const FacetPatch& patch, const std::vector<std::uint32_t>& polygon, bool gabriel)
+        : mesh_(mesh), patch_(patch), polygon_(polygon), gabriel_(gabriel) {
         for (std::uint32_t i = 0; i < polygon.size(); ++i) place_[patch.vertices[polygon[i]]] = i;
     }
 
@@ -39,7 +39,8 @@ public:
         std::sort(candidates.begin(), candidates.end());
         std::uint32_t found = no_index;
         for (const std::uint32_t k : candidates) {
-            if (solve(i, k) && solve(k, j)) {
+            const bool good = !gabriel_ || patch_.is_present({polygon_[i], polygon_[k], polygon_[j]}, true);
+            if (good && solve(i, k) && solve(k, j)) {
                 found = k;
                 break;
             }
@@ -60,6 +61,7 @@ private:
     const MeshState& mesh_;
     const FacetPatch& patch_;
     const std::vector<std::uint32_t>& polygon_;
+    bool gabriel_;
     std::unordered_map<std::uint32_t, std::uint32_t> place_;
     std::unordered_map<std::uint64_t, std::uint32_t> apex_;
 };
@@ -192,7 +194,7 @@ void FacetPatch::settle_ties(const std::vector<Corners>& neighbors, std::vector<
         if (group.size() < 2) continue;
         const std::vector<std::uint32_t> ring = outline_of(before, neighbors, group, group_of, seed);
         if (ring.size() != group.size() + 2) continue;
-        TieSolver solver(*mesh_, *this, ring);
+        TieSolver solver(*mesh_, *this, ring, gabriel);
         if (!solver.solve(0, static_cast<std::uint32_t>(ring.size() - 1))) continue;
         std::vector<Corners> tiles;
         solver.collect(0, static_cast<std::uint32_t>(ring.size() - 1), tiles);

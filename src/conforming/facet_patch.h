@@ -35,6 +35,9 @@ public:
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< over planar points, counter-clockwise
     std::vector<Missing> missing;                         ///< largest radius first
 
+    /// Whether a triangle over planar points is a face of the mesh, and with `gabriel` its diametral ball is empty.
+    bool is_present(const std::array<std::uint32_t, 3>& triangle, bool gabriel) const;
+
     Point3 lift(const delaunay::PlanarPoint& p) const;
     delaunay::PlanarPoint flatten(const Point3& p) const;
 
@@ -43,7 +46,6 @@ private:
     const Frame* frame_ = nullptr;
 
     void collect(const MeshState& mesh);
-    bool is_present(const std::array<std::uint32_t, 3>& triangle, bool gabriel) const;
     void settle_ties(const std::vector<std::array<std::uint32_t, 3>>& neighbors, std::vector<std::uint8_t>& present,
                      bool gabriel);
 };

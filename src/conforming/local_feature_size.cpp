@@ -160,11 +160,13 @@ LocalFeatureSize::LocalFeatureSize(const Complex& complex, const FacetInterior& 
         for (const auto& t : interior.triangles[f]) primitives_.push_back({t, f, ElementKind::facet});
     }
     for (std::uint32_t s = 0; s < complex.segments.size(); ++s) {
+        if (complex.is_dropped(s)) continue;
         const auto& [a, b] = complex.segments[s];
         primitives_.push_back({{a, b, b}, s, ElementKind::segment});
     }
     for (std::uint32_t v = 0; v < complex.points.size(); ++v) {
-        if (complex.point_segments[v].empty()) primitives_.push_back({{v, v, v}, v, ElementKind::vertex});
+        if (complex.point_segments[v].empty() && !complex.is_ignored(v))
+            primitives_.push_back({{v, v, v}, v, ElementKind::vertex});
     }
     if (primitives_.empty()) return;
     std::vector<Point3> centers(primitives_.size());

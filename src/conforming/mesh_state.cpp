@@ -29,6 +29,7 @@ void MeshState::reset(delaunay::Delaunay3 initial, const ProtectedArea* area, Pi
     facet_queue.clear();
     works_.clear();
     adopted_.clear();
+    gabriel_pieces_ = false;
     work_index_.assign(complex.frames.size(), no_index);
     facet_queued_.assign(complex.frames.size(), 0);
     first_pieces.assign(complex.segments.size(), no_index);
@@ -72,6 +73,7 @@ void MeshState::reset(delaunay::Delaunay3 initial, const ProtectedArea* area, Pi
 
 std::uint32_t MeshState::add_piece(const Piece& piece) {
     const auto id = static_cast<std::uint32_t>(pieces.size());
+    gabriel_pieces_ = gabriel_pieces_ || piece.rule == PieceRule::gabriel;
     pieces.push_back(piece);
     piece_of_edge_.set(piece.a, piece.b, id);
     return id;
@@ -79,14 +81,18 @@ std::uint32_t MeshState::add_piece(const Piece& piece) {
 
 void MeshState::find_touched(const delaunay::ConflictZone& zone) {
     touched_.clear();
-    for (const auto& [a, b] : zone.edges) {
+    const auto look_up = [&](const std::array<std::uint32_t, 2>& edge) {
+        const auto [a, b] = edge;
         const std::uint32_t id = piece_of_edge_.find(a, b);
-        if (id == no_index) continue;
+        if (id == no_index) return;
         const Piece& piece = pieces[id];  // entries of pieces that were cut since are stale
         if ((piece.a == a && piece.b == b) || (piece.a == b && piece.b == a)) touched_.push_back(id);
+    };
+    for (const auto& edge : zone.edges) look_up(edge);
+    removed_pieces_ = touched_.size();
+    if (gabriel_pieces_) {
+        for (const auto& edge : zone.border_edges) look_up(edge);
     }
-    std::sort(touched_.begin(), touched_.end());
-    touched_.erase(std::unique(touched_.begin(), touched_.end()), touched_.end());
 }
 
 MeshState::Inserted MeshState::insert(const Point3& place, std::uint32_t near, const Owner& owner) {
@@ -102,11 +108,11 @@ MeshState::Inserted MeshState::insert(const Point3& place, std::uint32_t near, c
     const std::uint32_t vertex = triangulation.insert_in_conflicts();
     owners.push_back(owner);
     for (const std::uint32_t facet : marks) queue_facet(facet);
-    for (const std::uint32_t id : touched_) {
-        const Piece& piece = pieces[id];
+    for (std::size_t i = 0; i < touched_.size(); ++i) {
+        const Piece& piece = pieces[touched_[i]];
         const bool hurt = piece.rule == PieceRule::gabriel &&
                           encroaches(place, triangulation.position(piece.a), triangulation.position(piece.b), rounding);
-        if (hurt || !triangulation.has_edge(piece.a, piece.b)) queue_piece(id);
+        if (hurt || i < removed_pieces_) queue_piece(touched_[i]);
     }
     return {Insertion::done, vertex};
 }
@@ -135,6 +141,7 @@ void MeshState::cut(std::uint32_t id, std::uint32_t vertex) {
 
 void MeshState::find_encroached(const Point3& place, std::uint32_t near, std::vector<std::uint32_t>& found) {
     found.clear();
+    if (!gabriel_pieces_) return;
     const delaunay::ConflictZone& zone = triangulation.find_conflicts(place, near);
     if (zone.occupied) return;
     find_touched(zone);

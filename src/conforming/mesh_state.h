@@ -97,7 +97,9 @@ private:
     std::deque<FacetWork> works_;
     std::vector<std::uint8_t> facet_queued_;
     std::unordered_multimap<std::uint32_t, std::uint32_t> adopted_;
-    std::vector<std::uint32_t> touched_;
+    std::vector<std::uint32_t> touched_;  // pieces among the edges of a conflict zone, those that disappear first
+    std::size_t removed_pieces_ = 0;
+    bool gabriel_pieces_ = false;  // there are any
 
     std::uint32_t add_piece(const Piece& piece);
     void find_touched(const delaunay::ConflictZone& zone);

@@ -20,7 +20,8 @@ double shell_near(double length) { return std::exp2(std::round(std::log2(length)
 
 }  // namespace
 
-Placement::Placement(const MeshState& mesh) : mesh_(mesh), acute_(mesh.complex.segments.size(), 0) {}
+Placement::Placement(const MeshState& mesh, SplitRule rule)
+    : mesh_(mesh), rule_(rule), acute_(mesh.complex.segments.size(), 0) {}
 
 bool Placement::is_acute(std::uint32_t segment, std::uint32_t end) const {
     const Complex& c = mesh_.complex;
@@ -56,6 +57,7 @@ Point3 Placement::split_of(const Piece& piece, const Point3* reference) {
     const auto fits = [&](double t) { return t > low + margin * (high - low) && t < high - margin * (high - low); };
     const double middle = low + 0.5 * (high - low);
     if (reference == nullptr) return at(middle);
+    if (rule_ == SplitRule::middle_first && low == 0.0 && high == length) return at(middle);
     const std::uint8_t ends = acute_ends(piece.owner);
     const bool both = (ends & first_acute) != 0 && (ends & second_acute) != 0;
     const double from_a = distance(*reference, a), from_b = distance(*reference, b);
@@ -69,7 +71,8 @@ Point3 Placement::split_of(const Piece& piece, const Point3* reference) {
     } else {
         t = dot(*reference - a, direction) / length;
     }
-    if (fits(t)) return at(t);
+    const bool copied = rule_ != SplitRule::shells || !(use_first || use_second);
+    if (copied && fits(t)) return at(t);
     if (use_first) {
         t = shell_near(middle);
     } else if (use_second) {

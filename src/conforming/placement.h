@@ -8,9 +8,16 @@
 
 namespace certa::conforming {
 
+/// Which distance a cut on a segment with an acute end takes over. None gives the fewest points everywhere.
+enum class SplitRule : std::uint8_t {
+    copy,          ///< the reference's
+    middle_first,  ///< whole segments are halved, parts as with copy
+    shells,        ///< a power of two
+};
+
 class Placement {
 public:
-    explicit Placement(const MeshState& mesh);
+    Placement(const MeshState& mesh, SplitRule rule);
 
     /// Where to cut a piece of a segment. With a reference: at the reference's distance from an acute end, or at its
     /// projection where no end is acute; on a power-of-two shell or in the middle when that is too near to an end.
@@ -22,6 +29,7 @@ public:
 
 private:
     const MeshState& mesh_;
+    SplitRule rule_;
     std::vector<std::uint8_t> acute_;  // per segment: bit 0, 1 first, second end; bit 2 known
     std::vector<std::uint32_t> facets_;
 

@@ -161,14 +161,16 @@ ProtectedSet protect_nothing(const Complex& complex) {
 }
 
 ProtectedSet protect_all(const Complex& complex) {
-    return {std::vector<std::uint8_t>(complex.points.size(), 1), std::vector<std::uint8_t>(complex.segments.size(), 1)};
+    ProtectedSet set = protect_nothing(complex);
+    for (std::uint32_t v = 0; v < complex.points.size(); ++v) set.vertices[v] = complex.is_ignored(v) ? 0 : 1;
+    for (std::uint32_t s = 0; s < complex.segments.size(); ++s) set.segments[s] = complex.is_dropped(s) ? 0 : 1;
+    return set;
 }
 
 ProtectedSet protect_sharp(const Complex& complex, const FacetInterior& interior) {
-    ProtectedSet set = protect_nothing(complex);
-    std::fill(set.vertices.begin(), set.vertices.end(), std::uint8_t{1});
+    ProtectedSet set = protect_all(complex);
     for (std::uint32_t s = 0; s < complex.segments.size(); ++s) {
-        set.segments[s] = is_sharp_segment(complex, interior, s);
+        set.segments[s] = set.segments[s] != 0 && is_sharp_segment(complex, interior, s) ? 1 : 0;
     }
     return set;
 }

@@ -10,6 +10,7 @@
 
 #include "conforming/facet_interior.h"
 #include "core/assert.h"
+#include "core/random.h"
 #include "core/vector3.h"
 
 namespace certa::conforming {
@@ -29,6 +30,25 @@ double crossing_of(const PlanarPoint& p, const PlanarPoint& q, const PlanarPoint
     return side_p / (side_p - side_q);
 }
 
+/// Few items as they come; many in rounds, each about as large as all before it together and in the given order: a
+/// first point in a wide gap removes many cells, so first points should be few and far between.
+std::vector<std::uint32_t> spread_out(const std::vector<std::uint32_t>& items) {
+    if (items.size() < 20'000) return items;
+    core::Random random(items.size());
+    std::vector<std::vector<std::uint32_t>> rounds(1);
+    while (std::size_t{1} << rounds.size() < items.size()) rounds.emplace_back();
+    for (const std::uint32_t item : items) {
+        std::size_t round = rounds.size() - 1;
+        while (round > 0 && random.coin()) --round;
+        rounds[round].push_back(item);
+    }
+    std::vector<std::uint32_t> order;
+    for (const auto& round : rounds) order.insert(order.end(), round.begin(), round.end());
+    return order;
+}
+
+constexpr const char* pile_up = "points pile up without an end in sight";
+
 }  // namespace
 
 Recovery::Recovery(MeshState& mesh, const ProtectedArea* area, const RecoveryOptions& options,
@@ -37,15 +57,10 @@ Recovery::Recovery(MeshState& mesh, const ProtectedArea* area, const RecoveryOpt
       area_(area),
       options_(options),
       control_(control),
-      placement_(mesh),
+      placement_(mesh, options.split_rule),
       segment_points_(mesh.complex.segments.size(), 0),
-      facet_points_(mesh.complex.frames.size(), 0),
-      initial_points_(mesh.triangulation.size()) {
+      facet_points_(mesh.complex.frames.size(), 0) {
     mesh_.heed_borders = options.gabriel;
-    if (area != nullptr) {
-        is_center_.assign(initial_points_, 0);
-        for (const std::uint32_t center : area->ball_centers) is_center_[center] = 1;
-    }
 }
 
 void Recovery::fail(Outcome outcome, bool stuck, ElementRef element, std::uint32_t vertex, const Point3& place,
@@ -56,6 +71,21 @@ void Recovery::fail(Outcome outcome, bool stuck, ElementRef element, std::uint32
     result_.obstructions.push_back({element, vertex, place, reason});
 }
 
+// Where points pile up: the elements that got most of them, down to half as many.
+void Recovery::blame_crowded_owners() {
+    const std::uint32_t most =
+        std::max(*std::max_element(segment_points_.begin(), segment_points_.end()),
+                 facet_points_.empty() ? 0 : *std::max_element(facet_points_.begin(), facet_points_.end()));
+    const auto blame = [&](ElementKind kind, const std::vector<std::uint32_t>& counts, auto place_of) {
+        for (std::uint32_t i = 0; i < counts.size(); ++i) {
+            if (2 * counts[i] >= most) result_.obstructions.push_back({{kind, i}, no_index, place_of(i), pile_up});
+        }
+    };
+    const Complex& c = mesh_.complex;
+    blame(ElementKind::segment, segment_points_, [&](std::uint32_t s) { return c.points[c.segments[s][0]]; });
+    blame(ElementKind::facet, facet_points_, [&](std::uint32_t f) { return c.frames[f].origin; });
+}
+
 bool Recovery::check_limits(const Owner& owner, const Point3& place) {
     const ElementRef element{owner.on_segment ? ElementKind::segment : ElementKind::facet, owner.index};
     if (options_.max_points != 0 && mesh_.triangulation.size() >= options_.max_points) {
@@ -64,18 +94,25 @@ bool Recovery::check_limits(const Owner& owner, const Point3& place) {
     }
     const std::uint32_t count = ++(owner.on_segment ? segment_points_[owner.index] : facet_points_[owner.index]);
     const std::size_t sides = owner.on_segment ? 0 : mesh_.complex.facet_sides[owner.index].size();
-    if (options_.owner_budget != 0 && count > options_.owner_budget + 16 * sides) {
-        fail(Outcome::over_budget, true, element, no_index, place, "points pile up on one element");
-        return false;
-    }
-    if (options_.total_budget != 0 && mesh_.triangulation.size() - initial_points_ > options_.total_budget) {
-        fail(Outcome::over_budget, true, element, no_index, place, "points pile up");
-        return false;
-    }
-    return true;
+    const bool crowded = options_.owner_budget != 0 && count > options_.owner_budget + 16 * sides;
+    const bool many =
+        options_.total_budget != 0 && mesh_.triangulation.size() - initial_points_ > options_.total_budget;
+    if (!crowded && !many) return true;
+    fail(Outcome::over_budget, true, element, no_index, place, pile_up);
+    if (many) blame_crowded_owners();
+    return false;
+}
+
+void Recovery::watch() {
+    if (++watched_ % 256 != 0) return;
+    if (control_.cancelled()) result_.outcome = Outcome::cancelled;
+    const auto open = static_cast<double>(mesh_.facet_queue.size() + mesh_.piece_queue.size());
+    control_.report("recover", 1.0 / (1.0 + open / (1.0 + static_cast<double>(mesh_.complex.frames.size()))));
 }
 
 bool Recovery::insert_point(const Point3& place, std::uint32_t near, const Owner& owner, std::uint32_t& vertex) {
+    watch();
+    if (is_over()) return false;
     if (!check_limits(owner, place)) return false;
     const MeshState::Inserted inserted = mesh_.insert(place, near, owner);
     vertex = inserted.vertex;
@@ -112,18 +149,8 @@ void Recovery::split_missing(std::uint32_t id) {
     }
     const Point3 a = mesh_.triangulation.position(piece.a), b = mesh_.triangulation.position(piece.b);
     const Point3 middle = a + 0.5 * (b - a);
-    const delaunay::ConflictZone& zone = mesh_.triangulation.find_conflicts(middle, piece.a);
-    std::uint32_t nearest = no_index;
-    double best = std::numeric_limits<double>::infinity();
-    for (const std::uint32_t v : zone.vertices) {
-        if (v == piece.a || v == piece.b) continue;
-        const double d = distance(mesh_.triangulation.position(v), middle);
-        if (d < best) {
-            best = d;
-            nearest = v;
-        }
-    }
-    if (nearest == no_index || best >= 0.5 * distance(a, b)) {
+    const std::uint32_t nearest = mesh_.triangulation.find_nearest(middle, piece.a);
+    if (nearest == piece.a || nearest == piece.b) {
         split(id, nullptr);
     } else {
         const Point3 reference = mesh_.triangulation.position(nearest);
@@ -133,10 +160,6 @@ void Recovery::split_missing(std::uint32_t id) {
 
 void Recovery::settle_pieces() {
     while (!is_over() && !mesh_.piece_queue.empty()) {
-        if (control_.cancelled()) {
-            result_.outcome = Outcome::cancelled;
-            return;
-        }
         const std::uint32_t id = mesh_.pop_piece();
         if (!mesh_.is_satisfied(mesh_.pieces[id])) split_missing(id);
     }
@@ -174,26 +197,47 @@ bool Recovery::settle_facet(std::uint32_t facet) {
     return true;
 }
 
-std::uint32_t Recovery::find_blocking_piece(const std::array<std::uint32_t, 3>& triangle, const PlanarPoint& p) const {
+Recovery::Blocking Recovery::find_blocking_piece(const std::array<std::uint32_t, 3>& triangle,
+                                                 const PlanarPoint& p) const {
     const PlanarPoint &a = patch_.points[triangle[0]], &b = patch_.points[triangle[1]], &c = patch_.points[triangle[2]];
     const PlanarPoint from{(a.x + b.x + c.x) / 3.0, (a.y + b.y + c.y) / 3.0};
-    std::uint32_t crossed = no_index, entered = no_index;
+    Blocking crossed, entered;
     double first = 1.5, deepest = 1.0 - 1e-9;
     for (std::uint32_t e = 0; e < patch_.edges.size(); ++e) {
         const PlanarPoint &x = patch_.points[patch_.edges[e].a], &y = patch_.points[patch_.edges[e].b];
         const double crossing = crossing_of(from, p, x, y);
         if (crossing < first) {
             first = crossing;
-            crossed = e;
+            crossed = {true, e};
         }
         const double depth =
             std::hypot(p.x - 0.5 * (x.x + y.x), p.y - 0.5 * (x.y + y.y)) / (0.5 * std::hypot(x.x - y.x, x.y - y.y));
         if (depth < deepest && (options_.mirroring || mesh_.pieces[patch_.pieces[e]].rule == PieceRule::gabriel)) {
             deepest = depth;
-            entered = e;
+            entered = {true, e};
         }
     }
-    return crossed != no_index ? crossed : entered;
+    return crossed.found ? crossed : entered;
+}
+
+bool Recovery::is_unchanged(std::uint32_t edge) const {
+    const Piece& piece = mesh_.pieces[patch_.pieces[edge]];
+    const std::uint32_t a = patch_.vertices[patch_.edges[edge].a], b = patch_.vertices[patch_.edges[edge].b];
+    return piece.a == a && piece.b == b;
+}
+
+// Circumcentres of slivers lie anywhere; what counts is the way there, not how far it goes beyond the facet.
+PlanarPoint Recovery::keep_near(const PlanarPoint& p) const {
+    PlanarPoint low = patch_.points[0], high = low;
+    for (const PlanarPoint& q : patch_.points) {
+        low = {std::min(low.x, q.x), std::min(low.y, q.y)};
+        high = {std::max(high.x, q.x), std::max(high.y, q.y)};
+    }
+    const PlanarPoint middle{0.5 * (low.x + high.x), 0.5 * (low.y + high.y)};
+    const double reach = 2.0 * std::hypot(high.x - low.x, high.y - low.y);
+    const double away = std::hypot(p.x - middle.x, p.y - middle.y);
+    if (away <= reach) return p;
+    return {middle.x + reach / away * (p.x - middle.x), middle.y + reach / away * (p.y - middle.y)};
 }
 
 bool Recovery::insert_in_facet(const Point3& place, std::uint32_t near) {
@@ -262,17 +306,8 @@ void Recovery::refine_triangle(const FacetPatch::Missing& missing) {
         }
     } else if (options_.mirroring) {
         const Point3 center = patch_.lift(missing.center);
-        const delaunay::ConflictZone& zone = mesh_.triangulation.find_conflicts(center, near);
-        std::uint32_t nearest = no_index;
-        double best = std::numeric_limits<double>::infinity();
-        for (const std::uint32_t v : zone.vertices) {
-            const double d = distance(mesh_.triangulation.position(v), center);
-            if (d < best) {
-                best = d;
-                nearest = v;
-            }
-        }
-        if (best < missing.radius) {
+        const std::uint32_t nearest = mesh_.triangulation.find_nearest(center, near);
+        if (distance(mesh_.triangulation.position(nearest), center) < missing.radius) {
             if (const auto image = placement_.mirror(patch_.facet, center, missing.radius, nearest)) {
                 const PlanarPoint p = patch_.flatten(*image);
                 const auto near_corner = [&](std::uint32_t corner) {
@@ -287,10 +322,12 @@ void Recovery::refine_triangle(const FacetPatch::Missing& missing) {
         }
     }
     for (;;) {
-        const Point3 lifted = patch_.lift(place);
-        const std::uint32_t blocking = find_blocking_piece(triangle, place);
-        if (blocking != no_index) {
-            split(patch_.pieces[blocking], &lifted);
+        const PlanarPoint aim = keep_near(place);
+        const Point3 lifted = patch_.lift(aim);
+        const Blocking blocking = find_blocking_piece(triangle, aim);
+        if (blocking.found) {
+            // A piece that was cut since is in the way no longer: the next look at the facet will tell.
+            if (is_unchanged(blocking.edge)) split(patch_.pieces[blocking.edge], &lifted);
             return;
         }
         if (insert_in_facet(lifted, near)) return;
@@ -298,17 +335,16 @@ void Recovery::refine_triangle(const FacetPatch::Missing& missing) {
         mirrored = false;
         place = missing.center;
     }
-    fail(Outcome::below_min_feature, true, {ElementKind::facet, patch_.facet}, no_index, patch_.lift(place),
+    fail(Outcome::below_min_feature, true, {ElementKind::facet, patch_.facet}, no_index, patch_.lift(keep_near(place)),
          "a point would come closer than the smallest feature to another one");
 }
 
-// One triangle, or in large facets many that do not touch each other's circles: their triangulations are dear.
-bool Recovery::refine() {
-    const std::size_t start = mesh_.triangulation.size();
-    const std::size_t limit = 1 + patch_.triangles.size() / 64;
+// The worst triangles that do not touch each other's circles, a fraction of the facet at a time: laying it out is dear.
+void Recovery::refine() {
+    const std::size_t limit = 1 + patch_.triangles.size() / 8;
     std::vector<PlanarPoint> placed;
     std::vector<std::uint32_t> facets;
-    std::size_t seen = start, done = 0;
+    std::size_t seen = mesh_.triangulation.size(), done = 0;
     for (const FacetPatch::Missing& missing : patch_.missing) {
         const auto hits = [&](const PlanarPoint& p) {
             return std::hypot(p.x - missing.center.x, p.y - missing.center.y) < missing.radius * (1.0 + 1e-9);
@@ -317,18 +353,14 @@ bool Recovery::refine() {
         refine_triangle(missing);
         if (is_over() || ++done >= limit) break;
         settle_pieces();
-        if (is_over()) break;
-        bool cut = false;
         for (; seen < mesh_.triangulation.size(); ++seen) {
             const auto v = static_cast<std::uint32_t>(seen);
             mesh_.find_facets(v, facets);
-            if (std::find(facets.begin(), facets.end(), patch_.facet) == facets.end()) continue;
-            placed.push_back(patch_.flatten(mesh_.triangulation.position(v)));
-            cut = cut || mesh_.owners[v - mesh_.complex.points.size()].on_segment;
+            if (std::find(facets.begin(), facets.end(), patch_.facet) != facets.end()) {
+                placed.push_back(patch_.flatten(mesh_.triangulation.position(v)));
+            }
         }
-        if (cut) break;  // the patch names pieces that are shorter now
     }
-    return !is_over();
 }
 
 void Recovery::survey(std::span<const std::uint8_t> present) {
@@ -337,42 +369,39 @@ void Recovery::survey(std::span<const std::uint8_t> present) {
     for (std::uint32_t f = 0; f < c.frames.size(); ++f) {
         if (c.facet_sides[f].empty()) continue;
         const bool known = !present.empty() && present[f] != 0 && !options_.gabriel;
-        if (known && settle_plain_triangle(f)) {
+        if (known) {
             for (const Side& side : c.facet_sides[f]) seen[side.segment] = 1;
-        } else {
+        } else if (!settle_facet(f)) {
             mesh_.queue_facet(f);
+            ++result_.missing_facets;
         }
+        if (is_over()) return;
     }
+    std::vector<std::uint32_t> missing;
     for (std::uint32_t id = 0; id < mesh_.pieces.size(); ++id) {
         const Piece& piece = mesh_.pieces[id];
         if (!piece.shield && seen[piece.owner] != 0 && piece.rule == PieceRule::present) continue;
         if (mesh_.is_satisfied(piece)) continue;
-        mesh_.queue_piece(id);
+        missing.push_back(id);
         if (!piece.shield) ++result_.missing_segments;
     }
+    for (const std::uint32_t id : spread_out(missing)) mesh_.queue_piece(id);
 }
 
 RecoveryResult Recovery::run(std::span<const std::uint8_t> present) {
     result_ = {};
+    initial_points_ = mesh_.triangulation.size();
+    if (area_ != nullptr) {
+        is_center_.assign(initial_points_, 0);
+        for (const std::uint32_t center : area_->ball_centers) is_center_[center] = 1;
+    }
     survey(present);
-    std::vector<std::uint8_t> was_missing(mesh_.complex.frames.size(), 0);
-    for (std::size_t step = 0; !is_over(); ++step) {
-        if (control_.cancelled()) {
-            result_.outcome = Outcome::cancelled;
-            break;
-        }
+    while (!is_over()) {
         settle_pieces();
         if (is_over() || mesh_.facet_queue.empty()) break;
-        if (step % 1024 == 0) {
-            const auto open = static_cast<double>(mesh_.facet_queue.size());
-            control_.report("recover", 1.0 / (1.0 + open / static_cast<double>(mesh_.complex.frames.size())));
-        }
+        watch();
         const std::uint32_t facet = mesh_.pop_facet();
         if (settle_facet(facet)) continue;
-        if (was_missing[facet] == 0) {
-            was_missing[facet] = 1;
-            ++result_.missing_facets;
-        }
         refine();
         mesh_.queue_facet(facet);
     }

@@ -15,7 +15,8 @@
 namespace certa::conforming {
 
 struct RecoveryOptions {
-    bool gabriel = false;          ///< empty diametral balls of constraint triangles
+    bool gabriel = false;  ///< empty diametral balls of constraint triangles
+    SplitRule split_rule = SplitRule::copy;
     bool mirroring = true;         ///< false: circumcentres only, as in the thesis
     std::size_t max_points = 0;    ///< 0: no bound. Above it: over_budget
     std::size_t owner_budget = 0;  ///< 0: no bound. Steiner points that one segment or facet may get before it is stuck
@@ -42,7 +43,7 @@ public:
     Recovery(MeshState& mesh, const ProtectedArea* area, const RecoveryOptions& options, const RunControl& control);
 
     /// Refines until every segment and facet is in the mesh, or until it is clear that it will not end well.
-    /// `present`: per facet, 1 where a triangle facet is known to be a face of the mesh; or empty.
+    /// `present`: per facet, 1 where a triangle facet is a face of the mesh and marked; or empty.
     RecoveryResult run(std::span<const std::uint8_t> present);
 
     /// The constraint triangles of a facet: after a successful run all, else what was found last.
@@ -59,7 +60,7 @@ private:
     std::vector<std::uint32_t> segment_points_, facet_points_;  // Steiner points per owner
     std::vector<std::uint8_t> is_center_;                       // per initial point: centre of a ball
     std::vector<std::uint32_t> encroached_;
-    std::size_t initial_points_ = 0;
+    std::size_t initial_points_ = 0, watched_ = 0;
 
     bool is_over() const { return result_.outcome != Outcome::done; }
     void survey(std::span<const std::uint8_t> present);
@@ -68,15 +69,22 @@ private:
     void settle_pieces();
     void split_missing(std::uint32_t piece);
     bool split(std::uint32_t piece, const Point3* reference);
-    bool refine();
+    void refine();
     void refine_triangle(const FacetPatch::Missing& missing);
     bool split_shield_of(const std::array<std::uint32_t, 3>& triangle);
-    std::uint32_t find_blocking_piece(const std::array<std::uint32_t, 3>& triangle,
-                                      const delaunay::PlanarPoint& p) const;
+    struct Blocking {
+        bool found = false;
+        std::uint32_t edge = 0;  // of the patch
+    };
+    Blocking find_blocking_piece(const std::array<std::uint32_t, 3>& triangle, const delaunay::PlanarPoint& p) const;
+    bool is_unchanged(std::uint32_t edge) const;
+    delaunay::PlanarPoint keep_near(const delaunay::PlanarPoint& p) const;
+    void watch();
     bool insert_in_facet(const Point3& place, std::uint32_t near);
     bool insert_point(const Point3& place, std::uint32_t near, const Owner& owner, std::uint32_t& vertex);
     void fail(Outcome outcome, bool stuck, ElementRef element, std::uint32_t vertex, const Point3& place,
               const char* reason);
+    void blame_crowded_owners();
     bool check_limits(const Owner& owner, const Point3& place);
 };
 

@@ -11,6 +11,7 @@
 #include <CGAL/Triangulation_vertex_base_with_info_3.h>
 
 #include <algorithm>
+#include <limits>
 #include <numeric>
 #include <utility>
 
@@ -38,6 +39,49 @@ using Facet = Triangulation::Facet;
 
 Kernel::Point_3 to_cgal(const Point3& p) { return {p.x, p.y, p.z}; }
 
+// The edges of one conflict zone: small, filled and read out all the time. Emptied by a new stamp.
+class EdgeSet {
+public:
+    struct Slot {
+        std::uint32_t a = 0, b = 0, stamp = 0;
+    };
+
+    void clear() {
+        ++stamp_;
+        size_ = 0;
+    }
+    /// True when ab (a < b) was not there yet.
+    bool insert(std::uint32_t a, std::uint32_t b) {
+        if (2 * (size_ + 1) > slots_.size()) grow();
+        for (std::size_t i = slot_of(a, b);; i = (i + 1) & (slots_.size() - 1)) {
+            Slot& slot = slots_[i];
+            if (slot.stamp != stamp_) {
+                slot = {a, b, stamp_};
+                ++size_;
+                return true;
+            }
+            if (slot.a == a && slot.b == b) return false;
+        }
+    }
+
+private:
+    std::size_t slot_of(std::uint32_t a, std::uint32_t b) const {
+        return ((a * 0x9e3779b1u) ^ (b * 0x85ebca77u)) >> 7 & (slots_.size() - 1);
+    }
+    void grow() {
+        std::vector<Slot> old(std::max<std::size_t>(256, 2 * slots_.size()));
+        old.swap(slots_);
+        size_ = 0;
+        for (const Slot& slot : old) {
+            if (slot.stamp == stamp_) insert(slot.a, slot.b);
+        }
+    }
+
+    std::vector<Slot> slots_;
+    std::size_t size_ = 0;
+    std::uint32_t stamp_ = 1;
+};
+
 }  // namespace
 
 struct Delaunay3::Impl {
@@ -48,6 +92,9 @@ struct Delaunay3::Impl {
 
     ConflictZone zone;
     Point3 place;
+    EdgeSet edges;
+    std::vector<std::uint32_t> vertex_stamps;
+    std::uint32_t vertex_stamp = 0;
     std::vector<Facet> hole;
     std::vector<CellHandle> conflict;
     std::vector<Facet> inner;
@@ -73,8 +120,30 @@ struct Delaunay3::Impl {
         return {};
     }
 
+    template <class Visit>
+    void visit_star(VertexHandle a, const Visit& visit) const {
+        ++stamp;
+        stack.clear();
+        stack.push_back(a->cell());
+        a->cell()->info().stamp = stamp;
+        while (!stack.empty()) {
+            const CellHandle cell = stack.back();
+            stack.pop_back();
+            visit(cell);
+            for (int i = 0; i < 4; ++i) {
+                if (cell->vertex(i) == a) continue;
+                const CellHandle next = cell->neighbor(i);
+                if (next->info().stamp == stamp) continue;
+                next->info().stamp = stamp;
+                stack.push_back(next);
+            }
+        }
+    }
+
     // Face abc as (cell, index), or a null cell.
     Facet find_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+        if (a < b) std::swap(a, b);
+        if (a < c) std::swap(a, c);
         const VertexHandle va = handles[a], vb = handles[b], vc = handles[c];
         const CellHandle start = find_cell(va, vb);
         if (start == CellHandle()) return {};
@@ -93,32 +162,49 @@ struct Delaunay3::Impl {
     std::uint32_t id_of(VertexHandle v) const { return triangulation.is_infinite(v) ? no_index : v->info(); }
 
     void fill_zone() {
-        ++stamp;
         zone.vertices.clear();
         zone.edges.clear();
+        zone.border_edges.clear();
         zone.removed_marks.clear();
         zone.border_marks.clear();
+        vertex_stamps.resize(handles.size(), 0);
+        ++vertex_stamp;
+        edges.clear();
+        // Edges around the zone first: what the cells add after that is inside.
+        for (const Facet& face : hole) {
+            std::array<std::uint32_t, 3> ids;
+            for (int i = 0; i < 3; ++i) ids[i] = id_of(face.first->vertex((face.second + i + 1) & 3));
+            std::sort(ids.begin(), ids.end());
+            add_edge(ids[0], ids[1], zone.border_edges);
+            add_edge(ids[1], ids[2], zone.border_edges);
+            add_edge(ids[0], ids[2], zone.border_edges);
+            const std::uint32_t mark = face.first->info().marks[face.second];
+            if (mark != no_index) zone.border_marks.push_back(mark);
+        }
         for (const CellHandle cell : conflict) {
             std::array<std::uint32_t, 4> ids;
             for (int i = 0; i < 4; ++i) ids[i] = id_of(cell->vertex(i));
+            std::sort(ids.begin(), ids.end());
             for (int i = 0; i < 4; ++i) {
                 if (ids[i] == no_index) continue;
-                zone.vertices.push_back(ids[i]);
-                for (int j = i + 1; j < 4; ++j) {
-                    if (ids[j] != no_index) zone.edges.push_back({std::min(ids[i], ids[j]), std::max(ids[i], ids[j])});
+                if (vertex_stamps[ids[i]] != vertex_stamp) {
+                    vertex_stamps[ids[i]] = vertex_stamp;
+                    zone.vertices.push_back(ids[i]);
                 }
+                for (int j = i + 1; j < 4; ++j) add_edge(ids[i], ids[j], zone.edges);
             }
         }
-        std::sort(zone.vertices.begin(), zone.vertices.end());
-        zone.vertices.erase(std::unique(zone.vertices.begin(), zone.vertices.end()), zone.vertices.end());
         for (const Facet& face : inner) {
             const std::uint32_t mark = face.first->info().marks[face.second];
             if (mark != no_index) zone.removed_marks.push_back(mark);
         }
-        for (const Facet& face : hole) {
-            const std::uint32_t mark = face.first->info().marks[face.second];
-            if (mark != no_index) zone.border_marks.push_back(mark);
-        }
+        // The triangulation lists faces in the order of its cells' addresses.
+        std::sort(zone.removed_marks.begin(), zone.removed_marks.end());
+        std::sort(zone.border_marks.begin(), zone.border_marks.end());
+    }
+
+    void add_edge(std::uint32_t a, std::uint32_t b, std::vector<std::array<std::uint32_t, 2>>& list) {
+        if (b != no_index && edges.insert(a, b)) list.push_back({a, b});
     }
 
     void release_conflicts() {
@@ -168,6 +254,7 @@ const ConflictZone& Delaunay3::find_conflicts(const Point3& place, std::uint32_t
     if (s.zone.occupied) {
         s.zone.vertices.assign(1, cell->vertex(li)->info());
         s.zone.edges.clear();
+        s.zone.border_edges.clear();
         s.zone.removed_marks.clear();
         s.zone.border_marks.clear();
         return s.zone;
@@ -176,6 +263,33 @@ const ConflictZone& Delaunay3::find_conflicts(const Point3& place, std::uint32_t
                                    std::back_inserter(s.inner));
     s.fill_zone();
     return s.zone;
+}
+
+std::uint32_t Delaunay3::find_nearest(const Point3& place, std::uint32_t near) const {
+    const Impl& s = *impl_;
+    const auto measure = [&](std::uint32_t v) {
+        const Point3& q = positions_[v];
+        const double dx = q.x - place.x, dy = q.y - place.y, dz = q.z - place.z;
+        return dx * dx + dy * dy + dz * dz;
+    };
+    // Of a vertex and its neighbours in a Delaunay triangulation, the vertex is the nearest only if it is so of all.
+    std::uint32_t nearest = near;
+    double best = measure(near);
+    for (std::uint32_t from = no_index; from != nearest;) {
+        from = nearest;
+        s.visit_star(s.handles[from], [&](CellHandle cell) {
+            for (int i = 0; i < 4; ++i) {
+                const std::uint32_t v = s.id_of(cell->vertex(i));
+                if (v == no_index || v == nearest) continue;
+                const double d = measure(v);
+                if (d < best || (d == best && v < nearest)) {
+                    best = d;
+                    nearest = v;
+                }
+            }
+        });
+    }
+    return nearest;
 }
 
 std::uint32_t Delaunay3::insert_in_conflicts() {
@@ -204,7 +318,8 @@ std::uint32_t Delaunay3::insert_in_conflicts() {
 }
 
 bool Delaunay3::has_edge(std::uint32_t a, std::uint32_t b) const {
-    return impl_->find_cell(impl_->handles[a], impl_->handles[b]) != CellHandle();
+    // Late vertices have small stars.
+    return impl_->find_cell(impl_->handles[std::max(a, b)], impl_->handles[std::min(a, b)]) != CellHandle();
 }
 
 bool Delaunay3::has_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
@@ -255,15 +370,23 @@ void Delaunay3::clear_marks() {
 Delaunay3::Cells Delaunay3::collect_cells() const {
     const Triangulation& t = impl_->triangulation;
     for (const CellHandle cell : t.all_cell_handles()) cell->info().component = no_index;
-    // Seeds in the order of vertices make the numbering independent of the order of cells in memory.
-    Cells cells;
     std::vector<CellHandle>& stack = impl_->stack;
+    using Key = std::array<std::uint32_t, 4>;
+    const auto key_of = [&](CellHandle cell) {
+        Key key;
+        for (int i = 0; i < 4; ++i) key[i] = impl_->id_of(cell->vertex(i));
+        std::sort(key.begin(), key.end());
+        return key;
+    };
+    // Returns the lowest cell by vertices: it makes the numbering independent of the order of cells in memory.
     const auto flood = [&](CellHandle seed, std::uint32_t number) {
+        Key lowest = key_of(seed);
         stack.assign(1, seed);
         seed->info().component = number;
         while (!stack.empty()) {
             const CellHandle cell = stack.back();
             stack.pop_back();
+            lowest = std::min(lowest, key_of(cell));
             for (int i = 0; i < 4; ++i) {
                 const CellHandle next = cell->neighbor(i);
                 if (cell->info().marks[i] != no_index || next->info().component != no_index) continue;
@@ -271,45 +394,47 @@ Delaunay3::Cells Delaunay3::collect_cells() const {
                 stack.push_back(next);
             }
         }
+        return lowest;
     };
+    // Infinite cells touch each other across infinite faces, which carry no marks: they are one component.
     flood(t.infinite_cell(), 0);
-    // Infinite cells separated by marked hull faces are connected through infinity all the same: walls lie between a
-    // finite and an infinite cell, and infinite cells touch each other across infinite faces, which carry no marks.
-    std::vector<CellHandle> star;
-    for (const VertexHandle v : impl_->handles) {
-        if (v == VertexHandle()) continue;
-        star.clear();
-        t.incident_cells(v, std::back_inserter(star));
-        std::vector<std::pair<std::array<std::uint32_t, 4>, CellHandle>> fresh;
-        for (const CellHandle cell : star) {
-            if (cell->info().component != no_index) continue;
-            std::array<std::uint32_t, 4> key;
-            for (int i = 0; i < 4; ++i) key[i] = cell->vertex(i)->info();
-            std::sort(key.begin(), key.end());
-            fresh.emplace_back(key, cell);
-        }
-        std::sort(fresh.begin(), fresh.end());
-        for (const auto& [key, cell] : fresh) {
-            if (cell->info().component == no_index) flood(cell, cells.component_count++);
-        }
-    }
+    std::vector<std::pair<Key, std::uint32_t>> bounded;
     for (const CellHandle cell : t.finite_cell_handles()) {
-        std::array<std::uint32_t, 4> ids;
-        for (int i = 0; i < 4; ++i) ids[i] = cell->vertex(i)->info();
+        if (cell->info().component != no_index) continue;
+        const auto number = static_cast<std::uint32_t>(bounded.size() + 1);
+        bounded.emplace_back(flood(cell, number), number);
+    }
+    std::sort(bounded.begin(), bounded.end());
+    std::vector<std::uint32_t> renumbered(bounded.size() + 1, 0);
+    for (std::uint32_t i = 0; i < bounded.size(); ++i) renumbered[bounded[i].second] = i + 1;
+    for (const CellHandle cell : t.all_cell_handles()) cell->info().component = renumbered[cell->info().component];
+
+    Cells cells;
+    cells.component_count = static_cast<std::uint32_t>(bounded.size() + 1);
+    cells.vertices.reserve(t.number_of_finite_cells());
+    cells.components.reserve(t.number_of_finite_cells());
+    std::array<std::uint32_t, 2> last{no_index, no_index};
+    for (const CellHandle cell : t.finite_cell_handles()) {
+        Key ids;
+        for (int i = 0; i < 4; ++i) {
+            ids[i] = cell->vertex(i)->info();
+            if (cell->info().marks[i] == no_index) continue;
+            const CellHandle next = cell->neighbor(i);
+            const std::uint32_t own = cell->info().component;
+            const std::uint32_t other = t.is_infinite(next) ? no_index : next->info().component;
+            const std::array<std::uint32_t, 2> wall{std::min(own, other), std::max(own, other)};
+            if (wall != last) cells.walls.push_back(last = wall);
+        }
         cells.vertices.push_back(ids);
         cells.components.push_back(cell->info().component);
     }
+    std::sort(cells.walls.begin(), cells.walls.end());
+    cells.walls.erase(std::unique(cells.walls.begin(), cells.walls.end()), cells.walls.end());
     return cells;
 }
 
 bool is_inside_diametral_ball(const Point3& p, const Point3& a, const Point3& b, const Point3& c) {
     return CGAL::side_of_bounded_sphere(to_cgal(a), to_cgal(b), to_cgal(c), to_cgal(p)) == CGAL::ON_BOUNDED_SIDE;
-}
-
-std::array<std::uint32_t, 2> Delaunay3::components_beside(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-    const Facet face = impl_->find_face(a, b, c);
-    CERTA_ASSERT(face.first != CellHandle());
-    return {face.first->info().component, face.first->neighbor(face.second)->info().component};
 }
 
 void Delaunay3::components_around(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& components) const {

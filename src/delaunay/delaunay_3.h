@@ -16,10 +16,11 @@ namespace certa::delaunay {
 /// What the insertion of a point would remove. Valid until the next call that changes or searches conflicts.
 struct ConflictZone {
     bool occupied = false;  ///< a vertex is already exactly there: `vertices` holds it alone, nothing else is set
-    std::vector<std::uint32_t> vertices;              ///< of the zone's cells, each once
-    std::vector<std::array<std::uint32_t, 2>> edges;  ///< of the zone's cells, repeated; some survive
-    std::vector<std::uint32_t> removed_marks;         ///< marks of the faces that disappear
-    std::vector<std::uint32_t> border_marks;          ///< marks of the faces around the zone, which stay
+    std::vector<std::uint32_t> vertices;                     ///< of the zone's cells, each once
+    std::vector<std::array<std::uint32_t, 2>> edges;         ///< inside the zone, each once: they disappear
+    std::vector<std::array<std::uint32_t, 2>> border_edges;  ///< around the zone, each once: they stay
+    std::vector<std::uint32_t> removed_marks;                ///< marks of the faces that disappear
+    std::vector<std::uint32_t> border_marks;                 ///< marks of the faces around the zone, which stay
 };
 
 class Delaunay3 {
@@ -43,6 +44,10 @@ public:
     /// Inserts the point of the last find_conflicts (not occupied) and returns its id.
     std::uint32_t insert_in_conflicts();
 
+    /// The vertex nearest to a place, up to rounding; the lower one of two. `near` is a vertex to start the search
+    /// from.
+    std::uint32_t find_nearest(const Point3& place, std::uint32_t near) const;
+
     bool has_edge(std::uint32_t a, std::uint32_t b) const;
     bool has_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
     /// The third vertices of the faces around edge ab; empty where ab is no edge.
@@ -54,17 +59,17 @@ public:
     bool mark_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t mark);
     void clear_marks();
 
-    /// Calls `visit` for every finite cell once with its vertices (positively oriented) and an index from 0.
-    /// components(): per cell, the number of its connected component when marked faces are walls; 0 is the one at
-    /// infinity, the others follow in the order of their lowest vertex.
+    /// All finite cells, positively oriented, and the connected components that marked faces divide space into: 0 is
+    /// the one at infinity, the others follow in the order of their lowest vertex.
     struct Cells {
         std::vector<std::array<std::uint32_t, 4>> vertices;
-        std::vector<std::uint32_t> components;
+        std::vector<std::uint32_t> components;  ///< per cell
         std::uint32_t component_count = 1;
+        /// Pairs of components that have a wall between them, each once, lower number first; no_index beyond the hull.
+        std::vector<std::array<std::uint32_t, 2>> walls;
     };
     Cells collect_cells() const;
-    /// The components of the cells on both sides of a face, or around an edge, which must be present.
-    std::array<std::uint32_t, 2> components_beside(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+    /// The components of the finite cells around an edge, which must be present.
     void components_around(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& components) const;
     /// The component (as in `cells`) that holds a place; no_index on a marked face.
     std::uint32_t locate_component(const Point3& place) const;
