@@ -8,6 +8,7 @@
 #include <numeric>
 
 #include "commands.h"
+#include "implicit_arguments.h"
 #include "interrupt.h"
 #include "report.h"
 #include "session.h"
@@ -19,7 +20,8 @@ struct CheckArguments {
     CommonFlags common;
     FileArgument file, against;
     ConformingCheckOptions options;
-    ConformOptions repairs;  // `repair` and `triangulate` of the run that made the mesh
+    ConformOptions repairs;   // `repair` and `triangulate` of the run that made the mesh
+    std::string certificate;  // of an implicit surface: --against is a function then
 };
 
 /// The complex of the mesh's own constraints: every triangle a facet, every edge a segment; `mesh` is relabelled so.
@@ -66,7 +68,11 @@ PiecewiseLinearComplex read_against(Session& session, const CheckArguments& argu
 }
 
 ExitCode run_check(Session& session, const CheckArguments& arguments) {
+    if (!arguments.certificate.empty() && !arguments.against.given())
+        throw UsageError("--certificate needs --against with the function that the mesh was made from");
     const MeshDocument document = session.read(arguments.file, "input");
+    if (!arguments.certificate.empty())
+        return check_implicit_mesh(session, document, {arguments.against.path}, arguments.certificate);
     if (document.tetrahedra.empty())
         throw UsageError(arguments.file.path +
                          " has no tetrahedra: `check` verifies tetrahedral meshes; `certa info` "
@@ -106,8 +112,12 @@ void add_check_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand("check", "Verify what `conform` promises, exactly, on any tetrahedral mesh");
     command->footer("Example:\n  certa check part.mesh --against part.off");
     command->add_option("FILE", arguments->file.path, "tetrahedral mesh (-: standard input)")->required();
-    command->add_option("--against", arguments->against.path, "the surface mesh or complex that it was made from")
+    command
+        ->add_option("--against", arguments->against.path,
+                     "the surface mesh or complex that it was made from; with --certificate the function")
         ->type_name("INPUT");
+    command->add_option("--certificate", arguments->certificate, "of `implicit`: verify a triangle mesh by it")
+        ->type_name("FILE");
     add_format_option(*command, "--input-format", arguments->file);
     add_format_option(*command, "--against-format", arguments->against);
     add_options(*command, frontend::conforming_check_options(), arguments->options);

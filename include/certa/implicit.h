@@ -132,9 +132,10 @@ struct ImplicitObstacle {
 const char* name_of(ImplicitObstacle::Reason reason);
 
 struct ImplicitOptions {
-    std::uint64_t max_cells = 8'000'000;          ///< cells of the octree; about 100 bytes each, 500 near the surface
-    std::optional<int> max_depth = std::nullopt;  ///< of the octree; automatic: as deep as doubles carry, at most 29
-    bool certificate = false;                     ///< write ImplicitResult::certificate
+    /// Cells of the octree; about 100 bytes each, 2000 near the surface.
+    std::optional<std::uint64_t> max_cells = 4'000'000;
+    std::optional<std::uint64_t> max_depth = std::nullopt;  ///< automatic: as deep as doubles carry, at most 29
+    bool certificate = false;                               ///< write ImplicitResult::certificate
 };
 
 /// A connected component of the surface.

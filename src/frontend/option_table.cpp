@@ -111,6 +111,19 @@ constexpr std::array output_table{
 
 constexpr std::array<std::string_view, 2> up_names{"y", "z"};
 
+constexpr std::array implicit_table{
+    Option<ImplicitOptions>{"max_cells",
+                            "max-cells",
+                            &ImplicitOptions::max_cells,
+                            {64.0, infinity, false, true},
+                            "stop above this number of cells of the octree"},
+    Option<ImplicitOptions>{"max_depth",
+                            "max-depth",
+                            &ImplicitOptions::max_depth,
+                            {1.0, infinity, false, true},
+                            "stop where cells would be smaller than the box halved so often"},
+};
+
 constexpr std::array view_table{
     Option<ViewOptions>{
         "up",
@@ -143,6 +156,7 @@ std::span<const Option<ConformOptions>> conform_options() { return conform_table
 std::span<const Option<ConformingCheckOptions>> conforming_check_options() { return check_table; }
 std::span<const Option<OutputOptions>> output_options() { return output_table; }
 std::span<const Option<ViewOptions>> view_options() { return view_table; }
+std::span<const Option<ImplicitOptions>> implicit_options() { return implicit_table; }
 
 double parse_number(std::string_view name, std::string_view text) {
     double value = 0.0;
@@ -310,6 +324,10 @@ template void set_option(const Option<OutputOptions>&, OutputOptions&, std::stri
 template std::string value_of(const Option<OutputOptions>&, const OutputOptions&);
 template std::string placeholder_of(const Option<OutputOptions>&);
 template std::string help_of(const Option<OutputOptions>&);
+template void set_option(const Option<ImplicitOptions>&, ImplicitOptions&, std::string_view);
+template std::string value_of(const Option<ImplicitOptions>&, const ImplicitOptions&);
+template std::string placeholder_of(const Option<ImplicitOptions>&);
+template std::string help_of(const Option<ImplicitOptions>&);
 template void set_option(const Option<ViewOptions>&, ViewOptions&, std::string_view);
 template std::string value_of(const Option<ViewOptions>&, const ViewOptions&);
 template std::string placeholder_of(const Option<ViewOptions>&);

@@ -3,6 +3,7 @@
 // are made from these tables; so will be the signatures of the Python module.
 #include <certa/conforming.h>
 #include <certa/curvature.h>
+#include <certa/implicit.h>
 #include <certa/io.h>
 #include <certa/view.h>
 
@@ -92,6 +93,7 @@ std::span<const Option<ConformingCheckOptions>> conforming_check_options();
 std::span<const Option<CurvatureOptions>> curvature_options();
 std::span<const Option<OutputOptions>> output_options();  ///< the last one, reference, is for labelled meshes only
 std::span<const Option<ViewOptions>> view_options();
+std::span<const Option<ImplicitOptions>> implicit_options();
 
 /// "rings", "ball" or "geodesic"
 std::string neighborhood_name(const CurvatureOptions& options);

@@ -28,8 +28,9 @@ public:
           field_(tape_),
           control_(control),
           certificate_(options.certificate) {
-        limits_.max_cells = options.max_cells;
-        limits_.max_depth = std::min(options.max_depth.value_or(tree_.max_depth()), tree_.max_depth());
+        limits_.max_cells = options.max_cells.value_or(std::uint64_t{1} << 31);
+        const auto deepest = static_cast<std::uint64_t>(tree_.max_depth());
+        limits_.max_depth = static_cast<int>(std::min(options.max_depth.value_or(deepest), deepest));
     }
 
     ImplicitResult run() {
@@ -128,7 +129,8 @@ ImplicitResult mesh_implicit(const Expression& function, const Point3& low, cons
     }
     if (options.max_depth && *options.max_depth < 1)
         implicit::refuse(DefectKind::option_out_of_range, "max_depth must be at least 1");
-    if (options.max_cells < 64) implicit::refuse(DefectKind::option_out_of_range, "max_cells must be at least 64");
+    if (options.max_cells && *options.max_cells < 64)
+        implicit::refuse(DefectKind::option_out_of_range, "max_cells must be at least 64");
     const auto grid = implicit::Grid::around(low, high);
     if (!grid)
         implicit::refuse(DefectKind::coordinate_out_of_range,

@@ -147,7 +147,7 @@ class Usage(CommandTest):
         self.expect_no_strays()
 
     def test_help_has_an_example_and_every_option_a_line(self):
-        for command in ("conform", "check", "info", "convert"):
+        for command in ("conform", "implicit", "check", "info", "convert"):
             done = self.run_certa(command, "--help")
             self.assertEqual(done.returncode, 0)
             self.assertIn(f"Example:\n  certa {command} ", done.stdout.decode())
@@ -359,6 +359,57 @@ class Conform(CommandTest):
         text = self.expect(4, "conform", "terrain.off", "-o", "out.mesh", "--threads", "1", preexec_fn=limit)
         self.assertIn("memory", text)
         self.expect_no_strays("terrain.off")
+
+
+class Implicit(CommandTest):
+    SPHERE = "x^2 + y^2 + 2*z^2 - 1"
+    TORUS = "(x^2+y^2+z^2+0.84)^2 - 4*(x^2+y^2)"
+
+    def test_certified_meshes_pass_the_check_and_only_theirs(self):
+        # The torus takes a sanitized build half a minute.
+        function, genus = (self.SPHERE, 0) if SANITIZED else (self.TORUS, 1)
+        report = self.report(0, "implicit", function, "-o", "torus.off", "--certificate", "torus.json")
+        self.assertEqual(report["verdict"], "certified")
+        self.assertEqual([c["genus"] for c in report["components"]], [genus])
+        self.assertEqual(report["proved"], ["isotopic"])
+        self.expect_no_strays("torus.off", "torus.json")
+        check = ("check", "torus.off", "--certificate", "torus.json", "--against")
+        self.assertEqual(self.report(0, *check, function)["check"]["genera"], [genus])
+        self.write("torus.txt", f"# the same in a file\nf = {function}\nf\n")
+        self.assertIn("verified", self.expect(0, *check, "torus.txt"))
+        self.assertIn("VIOLATED", self.expect(1, *check, function + " - 0.1"))
+        info = self.report(0, "info", "torus.off")["info"]["surface"]
+        self.assertEqual((info["genus"], info["closed"], info["manifold"]), (genus, True, True))
+
+    def test_what_cannot_be_certified_exits_4_with_its_place_and_writes_nothing(self):
+        report = self.report(4, "implicit", "x^2+y^2+z^2", "-o", "point.off", "--certificate", "point.json")
+        self.assertEqual((report["verdict"], report["obstacles"][0]["reason"]), ("undecided", "singular"))
+        self.assertIn("meets the box", self.expect(4, "implicit", "x + y", "-o", "plane.off"))
+        self.assertIn("not defined", self.expect(4, "implicit", "log(x)^2 + y^2 + z^2 - 0.1"))
+        self.assertIn("--max-cells", self.expect(4, "implicit", self.TORUS, "--max-cells", "100"))
+        self.expect_no_strays()
+
+    def test_empty_surfaces_are_a_result(self):
+        self.assertEqual(self.report(0, "implicit", "x^2+y^2+z^2+1")["verdict"], "empty")
+        self.assertIn("EMPTY", self.expect(0, "implicit", "(x-9)^2+y^2+z^2-1"))
+
+    def test_errors_show_the_place(self):
+        self.assertIn("  x + * y\n      ^", self.expect(3, "implicit", "x + * y"))
+        self.assertIn("smooth_union", self.expect(3, "implicit", "min(x, y)"))
+        self.write("f.txt", "a = x\nb = $\nb")
+        self.assertIn("f.txt:2: column 5", self.expect(3, "implicit", "f.txt"))
+        self.expect(3, "implicit", "x", "--box", "1", "1", "1", "0", "0", "0")
+        self.expect(2, "implicit", "x", "--box", "1", "1")
+        self.expect(2, "implicit", "x", "-o", "x.mesh")
+        self.expect(2, "check", "cube.off", "--certificate", "none.json")
+        self.expect(3, "check", "crossing.off", "--certificate", "none.json", "--against", "x^2+y^2+z^2-1")
+
+    def test_same_bytes_for_any_thread_count(self):
+        for threads in ("1", "2"):
+            self.expect(0, "implicit", self.SPHERE, "-o", f"{threads}.ply", "--certificate", f"{threads}.json", "--threads",
+                        threads, "--no-verify")
+        self.assertEqual(self.read("1.ply"), self.read("2.ply"))
+        self.assertEqual(self.read("1.json"), self.read("2.json"))
 
 
 class Info(CommandTest):

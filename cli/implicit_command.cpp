@@ -1,0 +1,284 @@
+// `certa implicit EXPR|FILE [-o OUT]`: from a function to a mesh with certified topology, verified by the independent
+// checker before it is written. What cannot be certified ends with exit code 4 and the boxes where the proof got stuck;
+// nothing is written.
+#include <certa/conforming.h>
+#include <certa/implicit.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+
+#include "commands.h"
+#include "implicit_arguments.h"
+#include "interrupt.h"
+#include "report.h"
+#include "session.h"
+
+namespace certa::cli {
+namespace {
+
+struct ImplicitArguments {
+    CommonFlags common;
+    FunctionArgument function;
+    FileArgument output;
+    std::vector<double> box{-2, -2, -2, 2, 2, 2};
+    ImplicitOptions options;
+    frontend::OutputOptions output_options;
+    std::string certificate;
+    bool no_verify = false;
+};
+
+std::string place_text(const Point3& p) {
+    return "(" + frontend::text_of(p.x) + ", " + frontend::text_of(p.y) + ", " + frontend::text_of(p.z) + ")";
+}
+
+/// What an obstacle means and what to do about it.
+const char* advice(ImplicitObstacle::Reason reason) {
+    switch (reason) {
+        case ImplicitObstacle::Reason::singular:
+            return "the function and its gradient cannot be told from 0 together: the surface is singular there, or "
+                   "nearly "
+                   "so; another level, or a smooth blend, may avoid it";
+        case ImplicitObstacle::Reason::meets_box:
+            return "the surface meets the box there; a larger or smaller --box may not";
+        case ImplicitObstacle::Reason::undefined:
+            return "the function is not defined there, or cannot be shown to be; choose a --box where it is";
+        case ImplicitObstacle::Reason::precision:
+            return "the cells have become as small as doubles or --max-depth allow";
+        case ImplicitObstacle::Reason::budget:
+            return "--max-cells was reached; the boxes are where it would go on";
+        default:
+            return "interrupted";
+    }
+}
+
+void report_result(Session& session, const ImplicitResult& result) {
+    Json& report = session.report();
+    report["outcome"] = name_of(result.outcome);
+    report["verdict"] = name_of(result.verdict);
+    report["box"] = {{"low", to_json(result.low)}, {"high", to_json(result.high)}};
+    report["mesh"] = {{"vertices", result.mesh.positions.size()}, {"triangles", result.mesh.triangles.size()}};
+    Json components = Json::array();
+    for (const ImplicitComponent& c : result.components) {
+        Json entry{{"genus", c.genus}, {"inner_sign", c.inner_sign}, {"degree", c.degree}};
+        entry["parent"] = c.parent ? Json(*c.parent + 1) : Json(nullptr);
+        components.push_back(entry);
+    }
+    report["components"] = components;
+    const ImplicitStatistics& s = result.statistics;
+    report["statistics"] = {{"cells", s.cells},       {"leaves", s.leaves}, {"open_leaves", s.open_leaves},
+                            {"clusters", s.clusters}, {"rounds", s.rounds}, {"tetrahedra", s.tetrahedra}};
+    Json obstacles = Json::array();
+    for (const ImplicitObstacle& o : result.obstacles)
+        obstacles.push_back({{"reason", name_of(o.reason)}, {"low", to_json(o.low)}, {"high", to_json(o.high)}});
+    report["obstacles"] = obstacles;
+    report["obstacle_count"] = result.obstacle_count;
+}
+
+ExitCode end_undecided(Session& session, const ImplicitResult& result) {
+    if (result.outcome == Outcome::cancelled || interrupt_flag()) return ExitCode::interrupted;
+    const ImplicitObstacle& first = result.obstacles.front();
+    session.say(std::string("UNDECIDED (") + name_of(first.reason) + "): " + advice(first.reason));
+    const std::size_t shown =
+        session.flags().verbose ? result.obstacles.size() : std::min<std::size_t>(5, result.obstacles.size());
+    for (std::size_t i = 0; i < shown; ++i)
+        session.say("  box " + place_text(result.obstacles[i].low) + " to " + place_text(result.obstacles[i].high));
+    if (result.obstacle_count > shown)
+        session.say("  ... " + counted(result.obstacle_count - shown, "more box", "more boxes"));
+    return ExitCode::unable;
+}
+
+void say_result(Session& session, const ImplicitResult& result) {
+    const std::string box = " in the box " + place_text(result.low) + " to " + place_text(result.high);
+    if (result.verdict == ImplicitVerdict::empty) {
+        session.say("EMPTY: the function has no zero" + box);
+        return;
+    }
+    std::string genera;
+    for (std::size_t i = 0; i < result.components.size() && i < 20; ++i)
+        genera += (i == 0 ? "" : ", ") + std::to_string(result.components[i].genus);
+    if (result.components.size() > 20) genera += ", ...";
+    session.say("CERTIFIED" + box + ": " + counted(result.components.size(), "component") + " of genus " + genera +
+                "; " + counted(result.mesh.positions.size(), "vertex", "vertices") + ", " +
+                counted(result.mesh.triangles.size(), "triangle"));
+    session.detail("  " + counted(result.statistics.leaves, "leaf", "leaves") + ", " +
+                   counted(result.statistics.clusters, "critical cluster") + ", " +
+                   counted(result.statistics.rounds, "round"));
+}
+
+void verify(Session& session, const ImplicitResult& result, const std::string& function) {
+    const ImplicitCheck check = session.timed("check", [&] {
+        const GracefulScope graceful;
+        return check_implicit(result.mesh, function, result.certificate, session.control());
+    });
+    if (interrupt_flag()) return;
+    session.report()["check"] = to_json(check);
+    if (!check.ok())
+        throw InternalError("the result failed its own check and was not written: " + check.violations.front());
+    session.report()["proved"] = {"isotopic"};
+    session.say("verified by the independent checker: " + counted(check.leaves_checked, "leaf", "leaves") + ", " +
+                counted(check.marks_checked, "mark") + ", " + counted(check.triangles_checked, "triangle"));
+}
+
+MeshDocument document_of(const ImplicitResult& result, Format format) {
+    MeshDocument document;
+    document.complex = make_complex(result.mesh);
+    if (format == Format::ply || format == Format::vtu) {
+        std::vector<std::int64_t> components;
+        for (const std::uint32_t c : result.triangle_components) components.push_back(std::int64_t{c} + 1);
+        document.fields.push_back({"component", Location::polygons, 1, std::move(components)});
+    }
+    return document;
+}
+
+void require_surface_format(const Session& session, const FileArgument& output) {
+    session.require_writable(output);
+    const Format format = output.format ? *output.format : *format_of(output.path);
+    if (format != Format::off && format != Format::obj && format != Format::ply && format != Format::stl &&
+        format != Format::vtu)
+        throw UsageError(std::string(name_of(format)) +
+                         " is no format for surfaces here; write .off, .obj, .ply, .stl or .vtu");
+}
+
+ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
+    if (arguments.output.given()) require_surface_format(session, arguments.output);
+    if (!arguments.certificate.empty()) session.require_writable({arguments.certificate, Format::off});
+    const FunctionArgument::Source source = arguments.function.read();
+    session.report()["input"] = {{"name", source.name}};
+    const Expression function = parse_expression(source.text, source.name);
+    Json& options = session.report()["options"];
+    for (const auto& option : frontend::implicit_options())
+        options[std::string(option.name)] = frontend::value_of(option, arguments.options);
+    options["box"] = arguments.box;
+    options["verify"] = !arguments.no_verify;
+    const auto& b = arguments.box;
+    ImplicitOptions settings = arguments.options;
+    settings.certificate = !arguments.no_verify || !arguments.certificate.empty();
+    const ImplicitResult result = session.timed("implicit", [&] {
+        const GracefulScope graceful;
+        return mesh_implicit(function, {b[0], b[1], b[2]}, {b[3], b[4], b[5]}, settings, session.control());
+    });
+    report_result(session, result);
+    if (result.verdict == ImplicitVerdict::undecided) return end_undecided(session, result);
+    say_result(session, result);
+    if (!arguments.no_verify) verify(session, result, source.text);
+    if (interrupt_flag()) return ExitCode::interrupted;
+    if (!arguments.certificate.empty()) {
+        session.timed("write", [&] { write_text(arguments.certificate, result.certificate); });
+        session.say("wrote " + arguments.certificate);
+    }
+    if (arguments.output.given()) {
+        const Format format = arguments.output.format ? *arguments.output.format : *format_of(arguments.output.path);
+        session.write(arguments.output, document_of(result, format), arguments.output_options);
+    }
+    return ExitCode::done;
+}
+
+}  // namespace
+
+std::string read_text(const std::string& path) {
+    const bool standard = path == "-";
+    std::FILE* file = standard ? stdin : std::fopen(path.c_str(), "rb");
+    if (file == nullptr) throw IoError(path, 0, "cannot be opened");
+    std::string text;
+    std::array<char, 65536> buffer;
+    while (const std::size_t count = std::fread(buffer.data(), 1, buffer.size(), file))
+        text.append(buffer.data(), count);
+    const bool broken = std::ferror(file) != 0;
+    if (!standard) std::fclose(file);
+    if (broken) throw IoError(standard ? "standard input" : path, 0, "cannot be read");
+    return text;
+}
+
+FunctionArgument::Source FunctionArgument::read() const {
+    if (text == "-") return {"standard input", read_text(text)};
+    std::error_code error;
+    if (std::filesystem::is_regular_file(text, error)) return {text, read_text(text)};
+    return {"expression", text};
+}
+
+Json to_json(const ImplicitCheck& check) {
+    return {{"violation_count", check.violation_count},    {"violations", check.violations},
+            {"verdict", name_of(check.verdict)},           {"genera", check.genera},
+            {"leaves_checked", check.leaves_checked},      {"marks_checked", check.marks_checked},
+            {"triangles_checked", check.triangles_checked}};
+}
+
+TriangleMesh triangles_of(const MeshDocument& document) {
+    TriangleMesh mesh;
+    mesh.positions = document.complex.positions;
+    for (std::size_t p = 0; p < document.complex.polygon_count(); ++p) {
+        const std::uint32_t first = document.complex.polygon_offsets[p];
+        if (document.complex.polygon_offsets[p + 1] - first != 3)
+            throw UsageError("polygon " + std::to_string(p + 1) +
+                             " of the mesh is no triangle: a certificate is for triangles");
+        const auto& corners = document.complex.corners;
+        mesh.triangles.push_back({corners[first], corners[first + 1], corners[first + 2]});
+    }
+    return mesh;
+}
+
+ExitCode check_implicit_mesh(Session& session, const MeshDocument& document, const FunctionArgument& function,
+                             const std::string& certificate) {
+    const FunctionArgument::Source source = function.read();
+    parse_expression(source.text, source.name);  // for its message; the check reads the text by itself
+    const TriangleMesh mesh = triangles_of(document);
+    const std::string proof = read_text(certificate);
+    const ImplicitCheck check = session.timed("check", [&] {
+        const GracefulScope graceful;
+        return check_implicit(mesh, source.text, proof, session.control());
+    });
+    if (interrupt_flag()) return ExitCode::interrupted;
+    session.report()["check"] = to_json(check);
+    session.report()["checked"] = {"isotopic"};
+    if (!check.ok()) {
+        for (std::size_t i = 0; i < check.violations.size() && (i < 20 || session.flags().verbose); ++i)
+            session.say(check.violations[i]);
+        session.say("VIOLATED: " + counted(check.violation_count, "violation") +
+                    "; the certificate does not prove the mesh isotopic to the zero set");
+        return ExitCode::violated;
+    }
+    session.report()["proved"] = {"isotopic"};
+    std::string genera;
+    for (const int genus : check.genera) genera += (genera.empty() ? " of genus " : ", ") + std::to_string(genus);
+    session.say("verified: isotopic to the zero set; " + counted(check.genera.size(), "component") + genera + "; " +
+                counted(check.leaves_checked, "leaf", "leaves") + ", " + counted(check.marks_checked, "mark") + ", " +
+                counted(check.triangles_checked, "triangle") + " checked");
+    return ExitCode::done;
+}
+
+void add_implicit_command(CLI::App& app, Action& action) {
+    auto arguments = std::make_shared<ImplicitArguments>();
+    CLI::App* command =
+        app.add_subcommand("implicit", "Mesh the zero set of a function of x, y, z with certified topology");
+    command->footer(
+        "Example:\n  certa implicit \"(x^2+y^2+z^2+0.84)^2 - 4*(x^2+y^2)\" -o torus.off --certificate torus.json\n"
+        "  certa check torus.off --against \"(x^2+y^2+z^2+0.84)^2 - 4*(x^2+y^2)\" --certificate torus.json");
+    command
+        ->add_option("FUNCTION", arguments->function.text,
+                     "expression, or a file of definitions that ends with one (-: standard input)")
+        ->required();
+    command
+        ->add_option("-o,--output", arguments->output.path,
+                     "triangle mesh to write (-: standard output); without it only the report is printed")
+        ->type_name("OUT");
+    add_format_option(*command, "--output-format", arguments->output);
+    command->add_option("--box", arguments->box, "low and high corner; the surface must not meet it (default: -2 to 2)")
+        ->expected(6)
+        ->type_name("X0 Y0 Z0 X1 Y1 Z1");
+    add_options(*command, frontend::implicit_options(), arguments->options);
+    command->add_option("--certificate", arguments->certificate, "write the certificate, JSON, for `check`")
+        ->type_name("FILE");
+    command->add_flag("--no-verify", arguments->no_verify, "do not run the independent checker before writing");
+    add_common_flags(*command, arguments->common);
+    command->callback([arguments, &action] {
+        action = [arguments] {
+            Session session("implicit", arguments->common);
+            return session.run([&] { return run_implicit(session, *arguments); });
+        };
+    });
+}
+
+}  // namespace certa::cli
