@@ -161,6 +161,13 @@ std::optional<Point3> Placement::mirror(std::uint32_t f, const Point3& center, d
     if (facets_.empty() && q >= inputs && mesh_.owners[q - inputs].on_segment) {
         if (const auto p = about_common_end(f, mesh_.owners[q - inputs].index, place); accept(p)) return p;
     }
+    // A sheet that runs close by without touching: seen from the projection, its point is straight above.
+    constexpr double close_by = 0.5;
+    const Frame& frame = mesh_.complex.frames[f];
+    const double height = dot(place - frame.origin, frame.normal);
+    if (std::abs(height) < close_by * radius && std::find(facets_.begin(), facets_.end(), f) == facets_.end()) {
+        return place - height * frame.normal;
+    }
     return std::nullopt;
 }
 

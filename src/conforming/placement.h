@@ -24,7 +24,8 @@ public:
     Point3 split_of(const Piece& piece, const Point3* reference);
 
     /// A point of facet f that looks like vertex q from the line or point where f meets an element that q lies on, and
-    /// lies within `radius` of `center` (both in the plane of f). Nothing when no such element is there.
+    /// lies within `radius` of `center` (both in the plane of f); or the foot of q where it is close to the plane.
+    /// Nothing when neither is there.
     std::optional<Point3> mirror(std::uint32_t f, const Point3& center, double radius, std::uint32_t q);
 
 private:

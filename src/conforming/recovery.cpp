@@ -395,6 +395,11 @@ RecoveryResult Recovery::run(std::span<const std::uint8_t> present) {
         is_center_.assign(initial_points_, 0);
         for (const std::uint32_t center : area_->ball_centers) is_center_[center] = 1;
     }
+    if (options_.max_points != 0 && initial_points_ > options_.max_points) {
+        fail(Outcome::over_budget, false, {ElementKind::vertex, 0}, no_index, mesh_.triangulation.position(0),
+             "there are more points to begin with than max_points allows");
+        return result_;
+    }
     survey(present);
     while (!is_over()) {
         settle_pieces();
