@@ -40,7 +40,7 @@ double estimate_noise(const Surface& surface, const Cells& cells, std::uint64_t 
     const std::size_t stride = std::max<std::size_t>(1, surface.used_vertices / sample);
     for (std::size_t v = 0; v < surface.used_vertices; v += stride) {
         if (surface.flags[v] & (vertex_flags::border | vertex_flags::non_manifold)) continue;
-        const std::vector<Index>& points = walker.collect(static_cast<Index>(v), rings);
+        const std::span<const Index> points = walker.collect(static_cast<Index>(v), rings);
         const JetFit fit = fitter.fit(static_cast<Index>(v), points, 4, false);
         if (fit.ok && fit.points >= 18) residuals.push_back(fit.residual);
     }

@@ -92,42 +92,51 @@ CurvatureMeasures measures_of(const Sums& sums, int exponent) {
     return measures;
 }
 
-const std::vector<Index>& RingWalker::collect(Index vertex, std::uint64_t rings) {
+void RingWalker::start(Index vertex) {
     vertices_.clear();
-    list_.clear();
-    list_.push_back(vertex);
+    found_ = 0;
+    reserve(1);
+    list_[found_++] = vertex;
     vertices_.mark(vertex);
-    std::size_t begin = 0;
-    for (std::uint64_t ring = 0; ring < rings; ++ring) {
-        const std::size_t end = list_.size();
-        if (begin == end) break;
-        for (; begin < end; ++begin)
-            for (const Index w : surface_.vertex_neighbors[list_[begin]])
-                if (vertices_.mark(w)) list_.push_back(w);
-    }
-    return list_;
 }
 
-const std::vector<Index>& RingWalker::collect_ball(Index vertex, double radius) {
-    vertices_.clear();
-    list_.clear();
-    list_.push_back(vertex);
-    vertices_.mark(vertex);
-    const Point3& center = surface_.positions[vertex];
-    for (std::size_t k = 0; k < list_.size(); ++k)
-        for (const Index w : surface_.vertex_neighbors[list_[k]]) {
-            const Point3 d = surface_.positions[w] - center;
-            if (dot(d, d) <= radius * radius && vertices_.mark(w)) list_.push_back(w);
+std::span<const Index> RingWalker::collect(Index vertex, std::uint64_t rings) {
+    start(vertex);
+    std::size_t begin = 0;
+    for (std::uint64_t ring = 0; ring < rings; ++ring) {
+        const std::size_t end = found_;
+        if (begin == end) break;
+        for (; begin < end; ++begin) {
+            const std::span<const Index> neighbors = surface_.vertex_neighbors[list_[begin]];
+            reserve(neighbors.size());
+            for (const Index w : neighbors) {
+                list_[found_] = w;
+                found_ += vertices_.mark_and_count(w);
+            }
         }
-    return list_;
+    }
+    return {list_.data(), found_};
+}
+
+std::span<const Index> RingWalker::collect_ball(Index vertex, double radius) {
+    start(vertex);
+    const Point3& center = surface_.positions[vertex];
+    for (std::size_t k = 0; k < found_; ++k) {
+        const std::span<const Index> neighbors = surface_.vertex_neighbors[list_[k]];
+        reserve(neighbors.size());
+        for (const Index w : neighbors) {
+            const Point3 d = surface_.positions[w] - center;
+            if (dot(d, d) <= radius * radius && vertices_.mark(w)) list_[found_++] = w;
+        }
+    }
+    return {list_.data(), found_};
 }
 
 const std::vector<Index>& RingWalker::collect_faces(Index vertex, std::uint64_t rings) {
     if (face_list_.empty()) faces_ = Marks(surface_.faces.size());
-    collect(vertex, rings - 1);
     faces_.clear();
     face_list_.clear();
-    for (const Index v : list_)
+    for (const Index v : collect(vertex, rings - 1))
         for (const Index f : surface_.vertex_faces[v])
             if (faces_.mark(f)) face_list_.push_back(f);
     return face_list_;
@@ -165,11 +174,12 @@ Sums RingWalker::sum_faces(Index vertex, std::uint64_t rings, Rim rim) {
 
 void RingWalker::add_rim_vertices(Sums& sums, Rim rim) {
     // Those within rings - 1 steps are inside; the others of the faces are on the rim, unless the ring closes there.
-    const std::size_t inner = list_.size();
+    const std::size_t inner = found_;
+    reserve(3 * face_list_.size());
     for (const Index f : face_list_)
         for (const Index v : surface_.faces[f])
-            if (vertices_.mark(v)) list_.push_back(v);
-    for (std::size_t k = 0; k < list_.size(); ++k) {
+            if (vertices_.mark(v)) list_[found_++] = v;
+    for (std::size_t k = 0; k < found_; ++k) {
         const Index v = list_[k];
         double weight = 1.0;
         if (k >= inner) {

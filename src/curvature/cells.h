@@ -1,5 +1,6 @@
 #pragma once
 // Measures of dual cells, one record per vertex, and sums of them over rings.
+#include <span>
 #include <vector>
 
 #include "curvature/surface.h"
@@ -55,6 +56,12 @@ public:
         return true;
     }
     bool has(Index i) const { return epochs_[i] == epoch_; }
+    /// 1 if it was not marked yet: for loops whose branches nobody could predict.
+    std::size_t mark_and_count(Index i) {
+        const std::size_t fresh = epochs_[i] != epoch_;
+        epochs_[i] = epoch_;
+        return fresh;
+    }
 
 private:
     std::vector<std::uint32_t> epochs_;
@@ -69,9 +76,9 @@ public:
 
     Sums sum(Index vertex, std::uint64_t rings, Rim rim);
     /// The vertices within `rings` steps, nearest first, the vertex itself in front.
-    const std::vector<Index>& collect(Index vertex, std::uint64_t rings);
+    std::span<const Index> collect(Index vertex, std::uint64_t rings);
     /// The vertices within the ball around the vertex that edges inside it connect to the vertex.
-    const std::vector<Index>& collect_ball(Index vertex, double radius);
+    std::span<const Index> collect_ball(Index vertex, double radius);
     /// The faces of the ring: those of all vertices within rings - 1 steps. Marked: holds_face.
     const std::vector<Index>& collect_faces(Index vertex, std::uint64_t rings);
     bool holds_face(Index face) const { return faces_.has(face); }
@@ -80,10 +87,17 @@ private:
     Sums sum_faces(Index vertex, std::uint64_t rings, Rim rim);
     void add_rim_vertices(Sums& sums, Rim rim);
 
+    /// Room for `more` vertices behind those found.
+    void reserve(std::size_t more) {
+        if (found_ + more > list_.size()) list_.resize(2 * (found_ + more));
+    }
+    void start(Index vertex);
+
     const Surface& surface_;
     const Cells& cells_;
     Marks vertices_, faces_;
     std::vector<Index> list_, face_list_;
+    std::size_t found_ = 0;  ///< entries of list_ in use
 };
 
 }  // namespace certa::curvature

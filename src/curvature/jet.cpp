@@ -44,7 +44,7 @@ bool JetFitter::solve(std::size_t rows, std::size_t columns) {
     return true;
 }
 
-JetFit JetFitter::fit(Index vertex, const std::vector<Index>& points, std::uint64_t degree, bool tapered) {
+JetFit JetFitter::fit(Index vertex, std::span<const Index> points, std::uint64_t degree, bool tapered) {
     JetFit fit;
     const Point3& normal = surface_.normals[vertex];
     if (normal == Point3{}) return fit;
@@ -107,15 +107,15 @@ public:
     void estimate(Index vertex, VertexRow& row) override {
         // Windows that are too small to fit anything grow.
         JetFit fit;
-        const std::vector<Index>* points =
-            rings_ > 0 ? &walker_.collect(vertex, rings_) : &walker_.collect_ball(vertex, radius_);
-        fit = fitter_.fit(vertex, *points, degree_, true);
+        std::span<const Index> points =
+            rings_ > 0 ? walker_.collect(vertex, rings_) : walker_.collect_ball(vertex, radius_);
+        fit = fitter_.fit(vertex, points, degree_, true);
         for (std::uint64_t rings = 2; !fit.ok && rings <= 4; ++rings) {
-            points = &walker_.collect(vertex, rings);
-            fit = fitter_.fit(vertex, *points, 2, true);
+            points = walker_.collect(vertex, rings);
+            fit = fitter_.fit(vertex, points, 2, true);
             row.flags |= vertex_flags::fallback;
         }
-        for (const Index v : *points) {
+        for (const Index v : points) {
             row.sums.area += cells_.records[v].area;
             row.sums.gaussian += cells_.records[v].gaussian;
         }

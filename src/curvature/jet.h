@@ -20,7 +20,7 @@ public:
     /// degree where there are fewer points than two more than coefficients.
     /// `tapered`: points count less towards the end of the window where there are twice as many as coefficients, which
     /// lets wide windows average noise with less bias; the residual is then no estimate of the noise.
-    JetFit fit(Index vertex, const std::vector<Index>& points, std::uint64_t degree, bool tapered);
+    JetFit fit(Index vertex, std::span<const Index> points, std::uint64_t degree, bool tapered);
 
 private:
     /// Solves the least-squares problem in place; false if it is singular.

@@ -9,6 +9,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace certa::curvature {
 namespace {
@@ -38,6 +39,8 @@ std::array<double, 2> inside_unit_ball(const Point3& a, double a2, const Point3&
     const double low = std::min(first, second), high = std::max(first, second);
     return {a2 <= 1.0 ? 0.0 : std::max(0.0, low), b2 <= 1.0 ? 1.0 : std::min(1.0, high)};
 }
+
+double AngleSum::value() const { return std::atan2(im_, re_) + 2.0 * std::numbers::pi * turns_; }
 
 double WeightedBall::over_segment(const Point3& a, double a2, const Point3& b, double b2) const {
     const auto [from, to] = inside_unit_ball(a, a2, b, b2);
@@ -96,7 +99,8 @@ double WeightedBall::primitive(double full, double s) const {
     return 0.0;
 }
 
-double WeightedBall::over_polygon_edge(const Point3& a, const Point3& b, const Point3& normal, double height2) const {
+double WeightedBall::over_polygon_edge(const Point3& a, const Point3& b, const Point3& normal, double height2,
+                                       AngleSum& outside) const {
     const double turn = dot(normal, cross(a, b));
     if (turn == 0.0) return 0.0;
     const double a2 = dot(a, a) + height2, b2 = dot(b, b) + height2, full = 1.0 - height2;
@@ -104,23 +108,22 @@ double WeightedBall::over_polygon_edge(const Point3& a, const Point3& b, const P
     // same inequality as for the ball, since x is at a right angle to the height.
     const auto [from, to] = inside_unit_ball(a, a2, b, b2);
     const Point3 d = b - a;
-    // F where s = 0, times the angle under which a part outside is seen.
-    const double outside = full * primitive(full, 0.0);
-    const auto seen = [&](const Point3& p, const Point3& q) {
-        return std::atan2(dot(normal, cross(p, q)), dot(p, q)) * outside;
-    };
-    if (!(to > from)) return seen(a, b);
-    double sum = 0.0;
-    if (from > 0.0) sum += seen(a, a + from * d);
-    if (to < 1.0) sum += seen(a + to * d, b);
-    if (profile_.weight == Weight::indicator) return sum + turn * 0.5 * (to - from);
+    // Outside F is constant: all that counts is the angle under which a part is seen.
+    const auto seen = [&](const Point3& p, const Point3& q) { outside.add(dot(p, q), dot(normal, cross(p, q))); };
+    if (!(to > from)) {
+        seen(a, b);
+        return 0.0;
+    }
+    if (from > 0.0) seen(a, a + from * d);
+    if (to < 1.0) seen(a + to * d, b);
+    if (profile_.weight == Weight::indicator) return turn * 0.5 * (to - from);
     double inner = 0.0;
     for (std::size_t k = 0; k < 4; ++k) {
         const double t = 0.5 * (from + to) + 0.5 * (to - from) * gauss4_points[k];
         const Point3 x = a + t * d;
         inner += gauss4_weights[k] * primitive(full, full - dot(x, x));
     }
-    return sum + turn * 0.5 * (to - from) * inner;
+    return turn * 0.5 * (to - from) * inner;
 }
 
 double WeightedBall::over_triangle(const std::array<Point3, 3>& p, const std::array<double, 3>& squares,
@@ -138,9 +141,12 @@ double WeightedBall::over_triangle(const std::array<Point3, 3>& p, const std::ar
     if (height2 >= 1.0) return 0.0;
     const Point3 foot = height * normal;
     const std::array<Point3, 3> flat{p[0] - foot, p[1] - foot, p[2] - foot};
-    const double sum = over_polygon_edge(flat[0], flat[1], normal, height2) +
-                       over_polygon_edge(flat[1], flat[2], normal, height2) +
-                       over_polygon_edge(flat[2], flat[0], normal, height2);
+    AngleSum outside;
+    double sum = over_polygon_edge(flat[0], flat[1], normal, height2, outside) +
+                 over_polygon_edge(flat[1], flat[2], normal, height2, outside) +
+                 over_polygon_edge(flat[2], flat[0], normal, height2, outside);
+    const double full = 1.0 - height2;
+    sum += full * primitive(full, 0.0) * outside.value();
     // A sliver's normal is noise: the weight's range bounds the integral all the same (the order 4 kernel dips to
     // -0.08).
     return std::clamp(sum, profile_.weight == Weight::kernel4 ? -0.08 * area : 0.0, area);

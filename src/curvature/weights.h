@@ -20,6 +20,23 @@ struct Profile {
     }
 };
 
+/// A sum of angles, each between -pi and pi, for the price of one arc tangent: the angles' complex numbers are
+/// multiplied, and passing the negative axis is noticed.
+class AngleSum {
+public:
+    /// The angle of (cosine, sine), of any length.
+    void add(double cosine, double sine) {
+        const double re = re_ * cosine - im_ * sine, im = re_ * sine + im_ * cosine;
+        if (im_ >= 0.0 && sine > 0.0 && im < 0.0) turns_ += 1.0;
+        if (im_ < 0.0 && sine < 0.0 && im >= 0.0) turns_ -= 1.0;
+        re_ = re, im_ = im;
+    }
+    double value() const;
+
+private:
+    double re_ = 1.0, im_ = 0.0, turns_ = 0.0;
+};
+
 /// A ball: everything is relative to its centre and in units of its radius.
 class WeightedBall {
 public:
@@ -40,7 +57,8 @@ public:
 private:
     double over_inner_triangle(const std::array<double, 3>& squares, const std::array<double, 3>& sides,
                                double area) const;
-    double over_polygon_edge(const Point3& a, const Point3& b, const Point3& normal, double height2) const;
+    double over_polygon_edge(const Point3& a, const Point3& b, const Point3& normal, double height2,
+                             AngleSum& outside) const;
     double primitive(double full, double s) const;
 
     Point3 center_;
