@@ -68,6 +68,10 @@ bool note(const Interval& value, const std::array<Interval, 3>& slopes, Certaint
 
 }  // namespace
 
+double Field::value(const Point3& place) { return doubles_.evaluate<0>({place.x, place.y, place.z}).value; }
+
+const Jet<double>& Field::jet(const Point3& place) { return doubles_.evaluate<2>({place.x, place.y, place.z}); }
+
 Certainty Field::certify(const Region& box) {
     Certainty found;
     const Jet<Interval>& natural = workspace_.evaluate<1>(box);

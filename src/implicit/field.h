@@ -30,11 +30,9 @@ public:
     /// The proved sign of f on the convex hull of points within the box; 0: not proved.
     int sign_on(const Region& box);
     /// The value of f in doubles.
-    double value(const Point3& place) { return doubles_.evaluate<0>({place.x, place.y, place.z}).value; }
+    double value(const Point3& place);
     /// Value, gradient and Hessian in doubles.
-    const expression::Jet<double>& jet(const Point3& place) {
-        return doubles_.evaluate<2>({place.x, place.y, place.z});
-    }
+    const expression::Jet<double>& jet(const Point3& place);
 
 private:
     expression::Workspace<Interval> workspace_;
