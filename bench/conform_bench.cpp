@@ -141,8 +141,8 @@ Measurement measure_apart(const Model& model, const Settings& settings) {
 std::vector<Model> generated_models(const Settings& settings) {
     // Cells a side with 10 layers; the number of facets follows within a few per cent.
     std::vector<Model> models;
-    std::vector<std::uint32_t> grids{23, 39, 71, 122};
-    if (settings.million) grids.push_back(223);
+    std::vector<std::uint32_t> grids{24, 41, 76, 133};
+    if (settings.million) grids.push_back(244);
     for (const std::uint32_t grid : grids)
         models.push_back(
             {"geology " + std::to_string(grid), [grid] { return generators::make_geology(grid, 10, 1); }, true});
