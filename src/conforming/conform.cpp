@@ -190,7 +190,8 @@ private:
     /// than this.
     std::size_t protection_limit() const {
         if (options_.max_points) return point_limit();
-        return std::max<std::size_t>(1'000'000, 50 * prepared_.complex.points.size());
+        const std::size_t base = options_.protection == Protection::needed ? 200'000 : 4'000'000;
+        return base + 50 * prepared_.complex.points.size();
     }
 
     /// The points and chains around protected vertices and segments; none when that exceeds a limit.
