@@ -354,7 +354,7 @@ class Conform(CommandTest):
         self.write("terrain.off", terrain(200))
 
         def limit():
-            resource.setrlimit(resource.RLIMIT_AS, (200 << 20, 200 << 20))
+            resource.setrlimit(resource.RLIMIT_AS, (140 << 20, 140 << 20))
 
         text = self.expect(4, "conform", "terrain.off", "-o", "out.mesh", "--threads", "1", preexec_fn=limit)
         self.assertIn("memory", text)
