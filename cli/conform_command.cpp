@@ -34,7 +34,7 @@ void require_volume_format(const Session& session, const FileArgument& output) {
 }
 
 /// Bytes that conform, the check and writing take with the default protection. Fitted from above to measured peaks of
-/// surfaces, geology and soups of 5k to 1M facets with up to two Steiner points per point of the input: these take 0.5
+/// surfaces, geology and soups of 5k to 1M facets with up to one Steiner point per point of the input: these take 0.5
 /// to 1.0 of it. What matters is the number of points that come out, at 1,500 to 3,300 bytes each, which nobody knows
 /// beforehand: narrow places can take many times more.
 std::uint64_t estimated_bytes(const PiecewiseLinearComplex& complex) {
