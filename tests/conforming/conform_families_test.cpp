@@ -187,7 +187,7 @@ void expect_no_dependence_on_the_angle(std::uint32_t pages, std::uint64_t seed) 
         EXPECT_LE(fan_points(pages, angle, seed), at_one + at_one * 3 / 10 + 8) << angle << " degrees";
     }
     for (const double angle : {0.001, 0.0001}) {
-        EXPECT_LE(fan_points(pages, angle, seed), narrow + narrow / 20 + 4) << angle << " degrees";
+        EXPECT_LE(fan_points(pages, angle, seed), narrow + narrow / 10 + 4) << angle << " degrees";
     }
 }
 
