@@ -60,7 +60,7 @@ double peak_megabytes() {
     return static_cast<double>(usage.ru_maxrss) / 1024.0;
 }
 
-/// The CPU time of the stages, as far as wall clock shares tell it.
+/// Shares of the stages by the wall clock: on a busy machine only roughly those of CPU time.
 std::string shares_of(const ConformStatistics& statistics) {
     double sum = 0.0;
     for (const auto& stage : statistics.stage_seconds) sum += stage.second;
@@ -122,7 +122,8 @@ Measurement measure_apart(const Model& model, const Settings& settings) {
         try {
             measurement = measure(model, settings);
         } catch (const std::exception& e) {
-            std::printf("%-18s refused: %.200s\n", model.name.c_str(), e.what());
+            const std::string text = e.what();
+            std::printf("%-18s refused: %s\n", model.name.c_str(), text.substr(0, text.find('\n')).c_str());
         }
         std::fflush(stdout);
         const bool sent = write(ends[1], &measurement, sizeof measurement) == sizeof measurement;
