@@ -186,8 +186,8 @@ private:
                                    : most;
     }
 
-    /// Protecting everything can take millions of points where a complex has slivers; without the user's word, no more
-    /// than this.
+    /// Protection, and the refinement around it, can take millions of points where a complex has slivers; without the
+    /// user's word, no more than this.
     std::size_t protection_limit() const {
         if (options_.max_points) return point_limit();
         const std::size_t base = options_.protection == Protection::needed ? 200'000 : 4'000'000;
@@ -287,7 +287,7 @@ private:
         recovery.gabriel = options_.gabriel;
         recovery.mirroring = plan.lazy;
         recovery.split_rule = plan.rule;
-        recovery.max_points = point_limit();
+        recovery.max_points = plan.protects ? protection_limit() : point_limit();
         if (plan.lazy) {
             const std::size_t factor = std::size_t{1} << std::min<std::size_t>(plan.restarts, 20);
             recovery.owner_budget = factor * limits_.owner_budget;

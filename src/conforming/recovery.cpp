@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "conforming/facet_interior.h"
 #include "core/assert.h"
@@ -30,17 +31,39 @@ double crossing_of(const PlanarPoint& p, const PlanarPoint& q, const PlanarPoint
     return side_p / (side_p - side_q);
 }
 
-/// Few items as they come; many in rounds, each about as large as all before it together and in the given order: a
+/// Bits of a coordinate in [0, 1], two zeros before each.
+std::uint64_t interleave(double t) {
+    auto x = static_cast<std::uint64_t>(std::clamp(t, 0.0, 1.0) * 0x1fffff);
+    x = (x | x << 32) & 0x1f00000000ffff;
+    x = (x | x << 16) & 0x1f0000ff0000ff;
+    x = (x | x << 8) & 0x100f00f00f00f00f;
+    x = (x | x << 4) & 0x10c30c30c30c30c3;
+    return (x | x << 2) & 0x1249249249249249;
+}
+
+/// Few pieces as they come; many in rounds, each about as large as all before it together and along a Morton curve: a
 /// first point in a wide gap removes many cells, so first points should be few and far between.
-std::vector<std::uint32_t> spread_out(const std::vector<std::uint32_t>& items) {
-    if (items.size() < 20'000) return items;
-    core::Random random(items.size());
+std::vector<std::uint32_t> spread_out(const MeshState& mesh, const std::vector<std::uint32_t>& ids) {
+    if (ids.size() < 20'000) return ids;
+    Point3 low = mesh.complex.points[0], high = low;
+    for (const Point3& p : mesh.complex.points) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    const double size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    std::vector<std::pair<std::uint64_t, std::uint32_t>> curve;
+    for (const std::uint32_t id : ids) {
+        const Point3 p = mesh.triangulation.position(mesh.pieces[id].a) - low;
+        curve.emplace_back(interleave(p.x / size) | interleave(p.y / size) << 1 | interleave(p.z / size) << 2, id);
+    }
+    std::sort(curve.begin(), curve.end());
+    core::Random random(ids.size());
     std::vector<std::vector<std::uint32_t>> rounds(1);
-    while (std::size_t{1} << rounds.size() < items.size()) rounds.emplace_back();
-    for (const std::uint32_t item : items) {
+    while (std::size_t{1} << rounds.size() < ids.size()) rounds.emplace_back();
+    for (const auto& [code, id] : curve) {
         std::size_t round = rounds.size() - 1;
         while (round > 0 && random.coin()) --round;
-        rounds[round].push_back(item);
+        rounds[round].push_back(id);
     }
     std::vector<std::uint32_t> order;
     for (const auto& round : rounds) order.insert(order.end(), round.begin(), round.end());
@@ -385,7 +408,7 @@ void Recovery::survey(std::span<const std::uint8_t> present) {
         missing.push_back(id);
         if (!piece.shield) ++result_.missing_segments;
     }
-    for (const std::uint32_t id : spread_out(missing)) mesh_.queue_piece(id);
+    for (const std::uint32_t id : spread_out(mesh_, missing)) mesh_.queue_piece(id);
 }
 
 RecoveryResult Recovery::run(std::span<const std::uint8_t> present) {
