@@ -53,7 +53,11 @@ public:
         for (std::uint32_t s = 0; s < mesh_.complex.segments.size(); ++s) {
             for (std::uint32_t id = mesh_.first_pieces[s]; id != no_index; id = mesh_.pieces[id].next) {
                 const Piece& piece = mesh_.pieces[id];
-                if (present_only && !mesh_.triangulation.has_edge(piece.a, piece.b)) continue;
+                // Sides of facets are sides of constraint triangles, which are looked up one by one.
+                const bool implied = !present_only && !mesh_.complex.segment_facets[s].empty();
+                const bool present = implied || mesh_.triangulation.has_edge(piece.a, piece.b);
+                CERTA_ASSERT(present || present_only);
+                if (!present) continue;
                 result_.mesh.edges.push_back({VertexId{piece.a}, VertexId{piece.b}});
                 result_.mesh.edge_segments.push_back(SegmentId{s});
             }

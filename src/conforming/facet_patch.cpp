@@ -10,6 +10,7 @@
 #include <unordered_map>
 
 #include "core/vector3.h"
+#include "exact/orientation.h"
 
 namespace certa::conforming {
 namespace {
@@ -39,14 +40,21 @@ public:
         std::sort(candidates.begin(), candidates.end());
         std::uint32_t found = no_index;
         for (const std::uint32_t k : candidates) {
-            const bool good = !gabriel_ || patch_.is_present({polygon_[i], polygon_[k], polygon_[j]}, true);
-            if (good && solve(i, k) && solve(k, j)) {
+            if (fits(i, k, j) && solve(i, k) && solve(k, j)) {
                 found = k;
                 break;
             }
         }
         apex_[key] = found;
         return found != no_index;
+    }
+
+    bool fits(std::uint32_t i, std::uint32_t k, std::uint32_t j) const {
+        const auto at = [&](std::uint32_t p) {
+            return exact::Point2{patch_.points[polygon_[p]].x, patch_.points[polygon_[p]].y};
+        };
+        if (exact::orient2d(at(i), at(k), at(j)) <= 0) return false;
+        return !gabriel_ || patch_.is_present({polygon_[i], polygon_[k], polygon_[j]}, true);
     }
 
     void collect(std::uint32_t i, std::uint32_t j, std::vector<Corners>& triangles) const {
