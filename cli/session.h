@@ -118,7 +118,7 @@ void add_options(CLI::App& app, std::span<const frontend::Option<Options>> table
         app.add_option_function<std::string>(
                name, [&option, &options](const std::string& text) { frontend::set_option(option, options, text); },
                help)
-            ->type_name(frontend::placeholder_of(option));
+            ->type_name(frontend::value_name_of(option));
     }
 }
 

@@ -138,22 +138,19 @@ private:
                 kept_[component] = 0;
             }
         }
-        const std::vector<std::uint8_t> wanted = kept_;
         if (std::none_of(kept_.begin(), kept_.end(), [](std::uint8_t k) { return k != 0; })) {
             kept_[0] = 1;
             if (!keep_outside) {
                 warn(
                     "the facets enclose no region that may be kept: region 0, the outside, is part of the mesh up to "
-                    "the "
-                    "convex hull");
+                    "the convex hull");
             }
         }
         if (!all_covered(bare) && kept_[0] == 0) {
             kept_[0] = 1;
             warn(
                 "some facets or segments touch no enclosed region: region 0, the outside, is part of the mesh up to "
-                "the "
-                "convex hull");
+                "the convex hull");
         }
         if (all_covered(bare)) return;
         for (const std::uint32_t component : bare) {
@@ -161,8 +158,7 @@ private:
             kept_[component] = 1;
             warn(
                 "a region with a hole point is kept, because facets or segments touch nothing else: remove these or "
-                "the "
-                "hole point");
+                "the hole point");
         }
     }
 

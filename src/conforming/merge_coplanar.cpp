@@ -7,9 +7,9 @@
 #include "conforming/merge_coplanar.h"
 
 #include <algorithm>
-#include <numeric>
 #include <optional>
 
+#include "core/union_find.h"
 #include "core/vector3.h"
 #include "exact/orientation.h"
 
@@ -84,23 +84,15 @@ private:
                is_boundary_of(s, g);
     }
 
-    std::uint32_t root(std::uint32_t f) {
-        Ids& parent = result_.representatives;
-        while (parent[f] != f) f = parent[f] = parent[parent[f]];
-        return f;
-    }
-
     void find_groups() {
-        result_.representatives.resize(old_.facet_sides.size());
-        std::iota(result_.representatives.begin(), result_.representatives.end(), 0u);
+        core::UnionFind groups(old_.facet_sides.size());
         result_.dropped_segments.assign(old_.segments.size(), 0);
         for (std::uint32_t s = 0; s < old_.segments.size(); ++s) {
             if (!may_merge(s)) continue;
             result_.dropped_segments[s] = 1;
-            const std::uint32_t f = root(old_.segment_facets[s][0]), g = root(old_.segment_facets[s][1]);
-            result_.representatives[std::max(f, g)] = std::min(f, g);
+            groups.unite(old_.segment_facets[s][0], old_.segment_facets[s][1]);
         }
-        for (std::uint32_t f = 0; f < result_.representatives.size(); ++f) result_.representatives[f] = root(f);
+        for (std::uint32_t f = 0; f < old_.facet_sides.size(); ++f) result_.representatives.push_back(groups.find(f));
     }
 
     void merge_facets() {

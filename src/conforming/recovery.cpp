@@ -6,11 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "conforming/facet_interior.h"
 #include "core/assert.h"
+#include "core/morton.h"
 #include "core/random.h"
 #include "core/vector3.h"
 
@@ -31,16 +31,6 @@ double crossing_of(const PlanarPoint& p, const PlanarPoint& q, const PlanarPoint
     return side_p / (side_p - side_q);
 }
 
-/// Bits of a coordinate in [0, 1], two zeros before each.
-std::uint64_t interleave(double t) {
-    auto x = static_cast<std::uint64_t>(std::clamp(t, 0.0, 1.0) * 0x1fffff);
-    x = (x | x << 32) & 0x1f00000000ffff;
-    x = (x | x << 16) & 0x1f0000ff0000ff;
-    x = (x | x << 8) & 0x100f00f00f00f00f;
-    x = (x | x << 4) & 0x10c30c30c30c30c3;
-    return (x | x << 2) & 0x1249249249249249;
-}
-
 /// Few pieces as they come; many in rounds, each about as large as all before it together and along a Morton curve: a
 /// first point in a wide gap removes many cells, so first points should be few and far between.
 std::vector<std::uint32_t> spread_out(const MeshState& mesh, const std::vector<std::uint32_t>& ids) {
@@ -54,7 +44,7 @@ std::vector<std::uint32_t> spread_out(const MeshState& mesh, const std::vector<s
     std::vector<std::pair<std::uint64_t, std::uint32_t>> curve;
     for (const std::uint32_t id : ids) {
         const Point3 p = mesh.triangulation.position(mesh.pieces[id].a) - low;
-        curve.emplace_back(interleave(p.x / size) | interleave(p.y / size) << 1 | interleave(p.z / size) << 2, id);
+        curve.emplace_back(core::morton_code(p.x / size, p.y / size, p.z / size), id);
     }
     std::sort(curve.begin(), curve.end());
     core::Random random(ids.size());
@@ -189,13 +179,12 @@ void Recovery::settle_pieces() {
 }
 
 bool Recovery::settle_plain_triangle(std::uint32_t facet) {
-    if (mesh_.find_work(facet) != nullptr) return false;
+    if (options_.gabriel || mesh_.find_work(facet) != nullptr) return false;
     const auto corners = triangle_of(mesh_.complex, facet);
     if (!corners) return false;
     for (const Side& side : mesh_.complex.facet_sides[facet]) {
         if (mesh_.is_cut(side.segment)) return false;
     }
-    if (options_.gabriel) return false;
     return mesh_.mark(facet, *corners);
 }
 

@@ -14,7 +14,9 @@
 #include <string>
 
 #include "core/assert.h"
+#include "core/morton.h"
 #include "core/parallel.h"
+#include "core/union_find.h"
 #include "curvature/link.h"
 
 namespace certa::curvature {
@@ -49,14 +51,6 @@ void require_valid(const TriangleMesh& mesh) {
     if (mesh.triangles.empty())
         defects.push_back({DefectKind::empty_input, {}, {}, "there are no triangles, so there is no curvature"});
     if (!defects.empty()) throw InputError(std::move(defects));
-}
-
-std::uint64_t spread(std::uint64_t bits) {
-    bits = (bits | bits << 32) & 0x1f00000000ffffULL;
-    bits = (bits | bits << 16) & 0x1f0000ff0000ffULL;
-    bits = (bits | bits << 8) & 0x100f00f00f00f00fULL;
-    bits = (bits | bits << 4) & 0x10c30c30c30c30c3ULL;
-    return (bits | bits << 2) & 0x1249249249249249ULL;
 }
 
 bool names_vertex_twice(const Triangle& t) { return t[0] == t[1] || t[1] == t[2] || t[2] == t[0]; }
@@ -110,7 +104,7 @@ std::vector<Index> sort_vertices(const TriangleMesh& mesh, Surface& surface) {
     for (std::size_t i = 0; i < n; ++i) {
         const Point3& p = mesh.positions[i];
         const std::uint64_t key =
-            !used[i] ? last : spread(cell(p.x, low.x)) | spread(cell(p.y, low.y)) << 1 | spread(cell(p.z, low.z)) << 2;
+            !used[i] ? last : core::morton_code_of_bits(cell(p.x, low.x), cell(p.y, low.y), cell(p.z, low.z));
         order[i] = {key, static_cast<Index>(i)};
     }
     sort_by_key(order, last);
@@ -386,17 +380,11 @@ void measure_vertices(Surface& surface, const RunControl& control) {
 }
 
 std::size_t count_components(const Surface& surface) {
-    std::vector<Index> parent(surface.used_vertices);
-    std::iota(parent.begin(), parent.end(), Index{0});
-    const auto root = [&](Index v) {
-        while (parent[v] != v) v = parent[v] = parent[parent[v]];
-        return v;
-    };
+    core::UnionFind vertices(surface.used_vertices);
     std::size_t components = surface.used_vertices;
     for (const auto& face : surface.faces)
         for (const std::size_t i : next) {
-            const Index a = root(face[i]), b = root(face[next[i]]);
-            if (a != b) parent[std::max(a, b)] = std::min(a, b), --components;
+            if (vertices.unite(face[i], face[next[i]])) --components;
         }
     return components;
 }

@@ -99,8 +99,9 @@ struct Delaunay3::Impl {
     std::vector<CellHandle> conflict;
     std::vector<Facet> inner;
 
-    // A cell with a and b, or none. Walks the star of a.
-    CellHandle find_cell(VertexHandle a, VertexHandle b) const {
+    // The first cell around a for which `is_wanted` holds, or none.
+    template <class Predicate>
+    CellHandle find_in_star(VertexHandle a, const Predicate& is_wanted) const {
         ++stamp;
         stack.clear();
         stack.push_back(a->cell());
@@ -108,7 +109,7 @@ struct Delaunay3::Impl {
         while (!stack.empty()) {
             const CellHandle cell = stack.back();
             stack.pop_back();
-            if (cell->has_vertex(b)) return cell;
+            if (is_wanted(cell)) return cell;
             for (int i = 0; i < 4; ++i) {
                 if (cell->vertex(i) == a) continue;
                 const CellHandle next = cell->neighbor(i);
@@ -120,24 +121,8 @@ struct Delaunay3::Impl {
         return {};
     }
 
-    template <class Visit>
-    void visit_star(VertexHandle a, const Visit& visit) const {
-        ++stamp;
-        stack.clear();
-        stack.push_back(a->cell());
-        a->cell()->info().stamp = stamp;
-        while (!stack.empty()) {
-            const CellHandle cell = stack.back();
-            stack.pop_back();
-            visit(cell);
-            for (int i = 0; i < 4; ++i) {
-                if (cell->vertex(i) == a) continue;
-                const CellHandle next = cell->neighbor(i);
-                if (next->info().stamp == stamp) continue;
-                next->info().stamp = stamp;
-                stack.push_back(next);
-            }
-        }
+    CellHandle find_cell(VertexHandle a, VertexHandle b) const {
+        return find_in_star(a, [&](CellHandle cell) { return cell->has_vertex(b); });
     }
 
     // Face abc as (cell, index), or a null cell.
@@ -277,7 +262,7 @@ std::uint32_t Delaunay3::find_nearest(const Point3& place, std::uint32_t near) c
     double best = measure(near);
     for (std::uint32_t from = no_index; from != nearest;) {
         from = nearest;
-        s.visit_star(s.handles[from], [&](CellHandle cell) {
+        s.find_in_star(s.handles[from], [&](CellHandle cell) {
             for (int i = 0; i < 4; ++i) {
                 const std::uint32_t v = s.id_of(cell->vertex(i));
                 if (v == no_index || v == nearest) continue;
@@ -287,6 +272,7 @@ std::uint32_t Delaunay3::find_nearest(const Point3& place, std::uint32_t near) c
                     nearest = v;
                 }
             }
+            return false;
         });
     }
     return nearest;

@@ -1,12 +1,10 @@
 #pragma once
 // The three-dimensional Delaunay triangulation behind indices: exact presence of edges and faces, the conflict zone of
 // a point before and after its insertion, and marks on faces that survive insertions elsewhere.
-#include <certa/run_control.h>
 #include <certa/types.h>
 
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <memory>
 #include <span>
 #include <vector>

@@ -236,7 +236,7 @@ void set_option(const Option<Options>& option, Options& options, std::string_vie
             } else {
                 for (std::size_t i = 0; i < member.names.size(); ++i)
                     if (member.names[i] == text) return member.set(options, i);
-                refuse(name, text, "one of " + placeholder_of(option));
+                refuse(name, text, "one of " + value_name_of(option));
             }
         },
         option.member);
@@ -263,7 +263,7 @@ std::string value_of(const Option<Options>& option, const Options& options) {
 }
 
 template <class Options>
-std::string placeholder_of(const Option<Options>& option) {
+std::string value_name_of(const Option<Options>& option) {
     return std::visit(
         [&](const auto& member) -> std::string {
             using Kind = std::decay_t<decltype(member)>;
@@ -276,7 +276,7 @@ std::string placeholder_of(const Option<Options>& option) {
             else if constexpr (std::same_as<Kind, std::optional<std::uint64_t> Options::*>)
                 return "COUNT";
             else if constexpr (std::same_as<Kind, Spelled<Options>>)
-                return std::string(member.placeholder);
+                return std::string(member.value_name);
             else {
                 std::string text;
                 for (const std::string_view name : member.names) text.append(text.empty() ? "" : "|").append(name);
@@ -297,7 +297,7 @@ std::string help_of(const Option<Options>& option) {
         const std::string value = value_of(option, Options{});
         return value.empty() ? text : text.append(" (default ").append(value).append(")");
     }
-    const bool is_length = placeholder_of(option) == "LENGTH";
+    const bool is_length = value_name_of(option) == "LENGTH";
     text.append(" (");
     if (is_length)
         text.append("number or % of the diagonal; ");
@@ -310,27 +310,27 @@ std::string help_of(const Option<Options>& option) {
 
 template void set_option(const Option<ConformOptions>&, ConformOptions&, std::string_view);
 template std::string value_of(const Option<ConformOptions>&, const ConformOptions&);
-template std::string placeholder_of(const Option<ConformOptions>&);
+template std::string value_name_of(const Option<ConformOptions>&);
 template std::string help_of(const Option<ConformOptions>&);
 template void set_option(const Option<ConformingCheckOptions>&, ConformingCheckOptions&, std::string_view);
 template std::string value_of(const Option<ConformingCheckOptions>&, const ConformingCheckOptions&);
-template std::string placeholder_of(const Option<ConformingCheckOptions>&);
+template std::string value_name_of(const Option<ConformingCheckOptions>&);
 template std::string help_of(const Option<ConformingCheckOptions>&);
 template void set_option(const Option<CurvatureOptions>&, CurvatureOptions&, std::string_view);
 template std::string value_of(const Option<CurvatureOptions>&, const CurvatureOptions&);
-template std::string placeholder_of(const Option<CurvatureOptions>&);
+template std::string value_name_of(const Option<CurvatureOptions>&);
 template std::string help_of(const Option<CurvatureOptions>&);
 template void set_option(const Option<OutputOptions>&, OutputOptions&, std::string_view);
 template std::string value_of(const Option<OutputOptions>&, const OutputOptions&);
-template std::string placeholder_of(const Option<OutputOptions>&);
+template std::string value_name_of(const Option<OutputOptions>&);
 template std::string help_of(const Option<OutputOptions>&);
 template void set_option(const Option<ImplicitOptions>&, ImplicitOptions&, std::string_view);
 template std::string value_of(const Option<ImplicitOptions>&, const ImplicitOptions&);
-template std::string placeholder_of(const Option<ImplicitOptions>&);
+template std::string value_name_of(const Option<ImplicitOptions>&);
 template std::string help_of(const Option<ImplicitOptions>&);
 template void set_option(const Option<ViewOptions>&, ViewOptions&, std::string_view);
 template std::string value_of(const Option<ViewOptions>&, const ViewOptions&);
-template std::string placeholder_of(const Option<ViewOptions>&);
+template std::string value_name_of(const Option<ViewOptions>&);
 template std::string help_of(const Option<ViewOptions>&);
 
 }  // namespace certa::frontend

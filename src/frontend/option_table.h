@@ -49,7 +49,7 @@ struct Choice {
 /// throws OptionError for a text that is no value, with the option's flag in front.
 template <class Options>
 struct Spelled {
-    std::string_view placeholder;
+    std::string_view value_name;
     std::string (*get)(const Options&);
     void (*set)(Options&, std::string_view flag, std::string_view text);
 };
@@ -133,7 +133,7 @@ std::string value_of(const Option<Options>& option, const Options& options);
 
 /// What the command's help prints in place of the value: "NUMBER", "LENGTH", "needed|sharp|all"; empty for flags.
 template <class Options>
-std::string placeholder_of(const Option<Options>& option);
+std::string value_name_of(const Option<Options>& option);
 
 /// The help phrase with unit, bounds and default.
 template <class Options>

@@ -15,7 +15,7 @@
 #include <unordered_map>
 
 #include "core/assert.h"
-#include "implicit/union_find.h"
+#include "core/union_find.h"
 
 namespace certa::implicit {
 namespace {
@@ -29,7 +29,7 @@ struct Square {
 /// Leaves that share a point share a corner of the smaller one, which is a point on the larger one's surface: so each
 /// critical leaf is united with the leaves around each of its corners.
 void unite_around(const Octree& tree, const GridPoint& corner, std::uint32_t place,
-                  const std::vector<std::uint32_t>& places, UnionFind& groups) {
+                  const std::vector<std::uint32_t>& places, core::UnionFind& groups) {
     for (unsigned octant = 0; octant < 8; ++octant) {
         GridPoint p = corner;
         bool inside = true;
@@ -183,7 +183,7 @@ std::vector<Cluster> find_clusters(const Octree& tree) {
         places[leaf] = static_cast<std::uint32_t>(critical.size());
         critical.push_back(leaf);
     }
-    UnionFind groups(critical.size());
+    core::UnionFind groups(critical.size());
     for (std::uint32_t place = 0; place < critical.size(); ++place) {
         const Cell& cell = tree.cell(critical[place]);
         const GridPoint high = tree.high_of(cell);

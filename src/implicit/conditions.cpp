@@ -12,7 +12,7 @@
 
 #include "core/assert.h"
 #include "core/parallel.h"
-#include "implicit/union_find.h"
+#include "core/union_find.h"
 
 namespace certa::implicit {
 namespace {
@@ -122,7 +122,7 @@ private:
     }
 
     void find_components() {
-        UnionFind groups(t_.point_count());
+        core::UnionFind groups(t_.point_count());
         for (const auto& tetrahedron : t_.tetrahedra()) {
             for (std::size_t i = 0; i < 4; ++i) {
                 for (std::size_t j = i + 1; j < 4; ++j) {
@@ -179,7 +179,7 @@ private:
     /// Components of the complement of W: unmarked points that share a tetrahedron, and leaves that are not
     /// triangulated with what they share a face with (none of their points is marked).
     void find_regions() {
-        regions_ = std::make_unique<UnionFind>(t_.point_count() + tree_.cells().size() + 1);
+        regions_ = std::make_unique<core::UnionFind>(t_.point_count() + tree_.cells().size() + 1);
         for (const auto& tetrahedron : t_.tetrahedra()) {
             std::uint32_t last = none;
             for (const std::uint32_t p : tetrahedron) {
@@ -310,7 +310,7 @@ private:
     const Growth& growth_;
     const std::vector<Cluster>& clusters_;
     std::vector<char> bad_;
-    std::unique_ptr<UnionFind> regions_;
+    std::unique_ptr<core::UnionFind> regions_;
     Findings findings_;
 };
 

@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/union_find.h"
 #include "core/vector3.h"
 #include "mesh/info_parts.h"
 
@@ -96,9 +97,9 @@ struct Joins {
           polygons(complex.polygon_count()),
           orientations(complex.polygon_count()),
           boundary(complex.positions.size()) {}
-    mesh::Forest fans, polygons;
+    core::UnionFind fans, polygons;
     ParityForest orientations;
-    mesh::Forest boundary;  // vertices, along boundary edges
+    core::UnionFind boundary;  // vertices, along boundary edges
     bool orientations_agree = true;
 };
 
@@ -107,7 +108,7 @@ void join_at_edge(std::span<const HalfEdge> around, Joins& joins, SurfaceInfo& i
     const HalfEdge& first = around[0];
     if (around.size() == 1) {
         ++info.boundary_edges;
-        joins.boundary.join(first.low, first.high);
+        joins.boundary.unite(first.low, first.high);
     } else if (around.size() > 2) {
         ++info.non_manifold_edges;
     } else {
@@ -119,14 +120,14 @@ void join_at_edge(std::span<const HalfEdge> around, Joins& joins, SurfaceInfo& i
     const auto corner_at_low = [](const HalfEdge& e) { return e.forward ? e.corner : e.next_corner; };
     const auto corner_at_high = [](const HalfEdge& e) { return e.forward ? e.next_corner : e.corner; };
     for (const HalfEdge& other : around.subspan(1)) {
-        joins.polygons.join(first.polygon, other.polygon);
-        joins.fans.join(corner_at_low(first), corner_at_low(other));
-        joins.fans.join(corner_at_high(first), corner_at_high(other));
+        joins.polygons.unite(first.polygon, other.polygon);
+        joins.fans.unite(corner_at_low(first), corner_at_low(other));
+        joins.fans.unite(corner_at_high(first), corner_at_high(other));
     }
 }
 
 /// Vertices used by polygons, and those among them with more than one fan.
-void count_fans(const PiecewiseLinearComplex& complex, mesh::Forest& fans, SurfaceInfo& info) {
+void count_fans(const PiecewiseLinearComplex& complex, core::UnionFind& fans, SurfaceInfo& info) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> vertex_fans;  // (vertex, representative corner)
     vertex_fans.reserve(complex.corners.size());
     for (std::size_t p = 0; p < complex.polygon_count(); ++p) {
@@ -145,7 +146,7 @@ void count_fans(const PiecewiseLinearComplex& complex, mesh::Forest& fans, Surfa
     }
 }
 
-void count_polygons(const PiecewiseLinearComplex& complex, mesh::Forest& components, SurfaceInfo& info) {
+void count_polygons(const PiecewiseLinearComplex& complex, core::UnionFind& components, SurfaceInfo& info) {
     std::vector<std::vector<std::uint32_t>> vertex_sets;
     for (std::uint32_t p = 0; p < complex.polygon_count(); ++p) {
         const auto corners = corners_of(complex, p);

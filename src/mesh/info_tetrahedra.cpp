@@ -4,6 +4,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/union_find.h"
 #include "core/vector3.h"
 #include "exact/orientation.h"
 #include "mesh/info_parts.h"
@@ -36,11 +37,11 @@ std::vector<SideTriangle> sorted_triangles(const std::vector<Tetrahedron>& tetra
 
 void connect(const std::vector<Tetrahedron>& tetrahedra, TetrahedraInfo& info) {
     const std::vector<SideTriangle> triangles = sorted_triangles(tetrahedra);
-    Forest components(tetrahedra.size());
+    core::UnionFind components(tetrahedra.size());
     for (std::size_t i = 0; i < triangles.size();) {
         std::size_t j = i;
         for (; j < triangles.size() && triangles[j].vertices == triangles[i].vertices; ++j)
-            components.join(triangles[i].tetrahedron, triangles[j].tetrahedron);
+            components.unite(triangles[i].tetrahedron, triangles[j].tetrahedron);
         info.boundary_triangles += j - i == 1;
         info.non_manifold_triangles += j - i > 2;
         i = j;

@@ -12,6 +12,7 @@
 #include <numeric>
 
 #include "core/assert.h"
+#include "core/morton.h"
 #include "core/random.h"
 #include "core/vector3.h"
 
@@ -139,19 +140,6 @@ private:
     std::uint32_t last_ = 0;
 };
 
-/// Position along a Z-shaped curve of numbers in [0, 1].
-std::uint64_t curve_key(double x, double y, double z) {
-    const auto spread = [](double value) {
-        auto bits = static_cast<std::uint64_t>(std::clamp(value, 0.0, 1.0) * 2097151.0);
-        bits = (bits | bits << 32) & 0x1f00000000ffffULL;
-        bits = (bits | bits << 16) & 0x1f0000ff0000ffULL;
-        bits = (bits | bits << 8) & 0x100f00f00f00f00fULL;
-        bits = (bits | bits << 4) & 0x10c30c30c30c30c3ULL;
-        return (bits | bits << 2) & 0x1249249249249249ULL;
-    };
-    return spread(x) | spread(y) << 1 | spread(z) << 2;
-}
-
 std::vector<std::uint32_t> order_by(const std::vector<std::uint64_t>& keys, const std::vector<bool>& left_out) {
     std::vector<std::uint32_t> order;
     for (std::uint32_t v = 0; v < keys.size(); ++v)
@@ -249,7 +237,7 @@ Triangulation triangulate_by_flips(Triangulation start, const std::vector<std::u
 
 Triangulation triangulate_flat_torus(const std::vector<std::array<double, 2>>& points, double width, double height) {
     std::vector<std::uint64_t> keys;
-    for (const auto& p : points) keys.push_back(curve_key(p[0] / width, p[1] / height, 0.0));
+    for (const auto& p : points) keys.push_back(core::morton_code(p[0] / width, p[1] / height, 0.0));
     std::vector<bool> left_out(points.size());
     left_out[0] = true;
     Triangulation start;
@@ -268,7 +256,7 @@ Triangulation triangulate_sphere(const std::vector<Point3>& points) {
     for (const auto& triangle : start.triangles)
         for (const Corner& corner : triangle) left_out[corner.vertex] = true;
     std::vector<std::uint64_t> keys;
-    for (const Point3& p : points) keys.push_back(curve_key((p.x + 1) / 2, (p.y + 1) / 2, (p.z + 1) / 2));
+    for (const Point3& p : points) keys.push_back(core::morton_code((p.x + 1) / 2, (p.y + 1) / 2, (p.z + 1) / 2));
     return triangulate_by_flips(std::move(start), order_by(keys, left_out), Sphere(points));
 }
 

@@ -76,8 +76,8 @@ TEST(OptionTable, OutOfRangeAndIllFormedAreRefused) {
 TEST(OptionTable, HelpShowsDefaultsAndBounds) {
     EXPECT_NE(help_of(option_named("alpha")).find("(0, 0.5); default 0.4"), std::string::npos);
     EXPECT_NE(help_of(option_named("max_points")).find("at least 1; no limit"), std::string::npos);
-    EXPECT_EQ(placeholder_of(option_named("protection")), "needed|sharp|all");
-    EXPECT_EQ(placeholder_of(option_named("gabriel")), "");
+    EXPECT_EQ(value_name_of(option_named("protection")), "needed|sharp|all");
+    EXPECT_EQ(value_name_of(option_named("gabriel")), "");
 }
 
 }  // namespace

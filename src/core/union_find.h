@@ -1,10 +1,11 @@
 #pragma once
 // Disjoint sets of indices; the lowest index stands for its set, so that results do not depend on the order of unions.
+#include <algorithm>
 #include <cstdint>
 #include <numeric>
 #include <vector>
 
-namespace certa::implicit {
+namespace certa::core {
 
 class UnionFind {
 public:
@@ -14,17 +15,16 @@ public:
         while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
         return i;
     }
-    void unite(std::uint32_t a, std::uint32_t b) {
+    /// Returns whether the two were in different sets.
+    bool unite(std::uint32_t a, std::uint32_t b) {
         a = find(a);
         b = find(b);
-        if (a < b)
-            parents_[b] = a;
-        else
-            parents_[a] = b;
+        parents_[std::max(a, b)] = std::min(a, b);
+        return a != b;
     }
 
 private:
     std::vector<std::uint32_t> parents_;
 };
 
-}  // namespace certa::implicit
+}  // namespace certa::core
