@@ -24,14 +24,15 @@ ALLOWED = {
     "delaunay": {"core", "exact", "mesh"},
     "conforming": {"core", "exact", "mesh", "delaunay"},
     "curvature": {"core", "exact", "mesh"},
+    "remeshing": {"core", "exact", "mesh", "delaunay", "curvature"},
     "verify": {"core"},  # shares no code with what it checks
     "frontend": set(),
     "cli": {"frontend"},
 }
 # Libraries that only some rooms may see: header prefix -> rooms.
 LIBRARIES = {
-    "CGAL/": {"exact", "delaunay", "conforming", "verify"},
-    "boost/": {"exact", "delaunay", "conforming", "verify", "cli"},
+    "CGAL/": {"exact", "delaunay", "conforming", "remeshing", "verify"},
+    "boost/": {"exact", "delaunay", "conforming", "remeshing", "verify", "cli"},
     "tao/": {"expression"},
     "mpfi": {"verify"},
     "CLI/": {"cli"},
@@ -44,7 +45,10 @@ PUBLIC_FORBIDDEN = re.compile(r"^(CGAL|Eigen|boost|tbb|gmp|mpfr|iostream|istream
 FORBIDDEN_NAME = re.compile(r"(^|_)(utils?|helpers?|misc|common|managers?|base)(_|\.|$)")
 MAX_LINES = 800
 # Algorithms take and return values: they never print or end the process.
-SILENT = {"core", "interval", "expression", "implicit", "exact", "mesh", "page", "delaunay", "conforming", "curvature", "verify"}
+SILENT = {"core", "interval", "expression", "implicit", "exact", "mesh", "page", "delaunay", "conforming", "curvature"} | {
+    "remeshing",
+    "verify",
+}
 NOISE = re.compile(r"\bstd::(cout|cerr|clog)\b|\bstd::exit\b|[^\w.:>]exit\s*\(|\bf?printf\s*\(|\bfesetround\s*\(")
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]')
