@@ -119,11 +119,12 @@ const char* name_of(ImplicitVerdict verdict);
 /// A box where the proof got stuck, and why.
 struct ImplicitObstacle {
     enum class Reason : std::uint8_t {
-        singular,   ///< f and its gradient cannot be told from 0 together
-        meets_box,  ///< the surface crosses or touches the boundary of the box
-        undefined,  ///< f cannot be shown to be defined there
-        precision,  ///< the cell is as small as doubles allow
-        budget,     ///< max_cells
+        singular,        ///< f and its gradient cannot be told from 0 together
+        meets_box,       ///< the surface crosses or touches the boundary of the box
+        tangent_to_box,  ///< of a box that clips: the surface is tangent to a face or an edge of it, or meets a corner
+        undefined,       ///< f cannot be shown to be defined there
+        precision,       ///< the cell is as small as doubles allow
+        budget,          ///< max_cells
         cancelled,
     };
     Reason reason{};
@@ -136,14 +137,18 @@ struct ImplicitOptions {
     std::optional<std::uint64_t> max_cells = 4'000'000;
     std::optional<std::uint64_t> max_depth = std::nullopt;  ///< automatic: as deep as doubles carry, at most 29
     bool certificate = false;                               ///< write ImplicitResult::certificate
+    /// The surface may meet the box: what lies in the box is meshed, with loops in the box's boundary. Components,
+    /// genera and loops are certified then (docs/implicit-theorem.md), isotopy is not claimed.
+    bool clip = false;
 };
 
 /// A connected component of the surface.
 struct ImplicitComponent {
-    int genus = 0;
-    int inner_sign = 0;  ///< of f just inside
-    int degree = 0;      ///< of the gradient over what the component encloses: inner_sign * (genus - 1)
-    std::optional<std::uint32_t> parent;  ///< the component next around it
+    int genus = 0;       ///< of a clipped one: with a disk glued to each loop
+    int inner_sign = 0;  ///< of f just inside; 0 in a box that clips, which has no inside
+    int degree = 0;      ///< of the gradient over what the component encloses: inner_sign * (genus - 1); 0 likewise
+    std::optional<std::uint32_t> parent;  ///< the component next around it; empty likewise
+    int loops = 0;                        ///< boundary loops in the faces of a box that clips
 };
 
 struct ImplicitStatistics {

@@ -11,6 +11,7 @@
 #include "implicit/clusters.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <unordered_map>
 
@@ -75,6 +76,7 @@ public:
 
 private:
     void add_square(const GridPoint& low, int axis, int side, Coordinate size, std::uint32_t beyond) {
+        if (beyond == none) return;  // a mirror: the other side is the same cluster again
         const Cell& neighbour = tree_.cell(beyond);
         if (!neighbour.is_leaf()) {
             const auto a = static_cast<unsigned>(axis), u = (a + 1) % 3, v = (a + 2) % 3;
@@ -127,18 +129,34 @@ struct EdgeInZ {
     std::array<std::int8_t, 3> slopes{};
 };
 
-int degree_with_roles(const Boundary& boundary, int first) {
+/// The point of a copy of the box that is reflected along some axes, a bit each: points on the mirrors are the same in
+/// both halves.
+std::uint32_t copied(const Octree& tree, std::uint32_t point, unsigned copy) {
+    const unsigned faces = tree.box_faces(tree.points()[point]);
+    for (unsigned a = 0; a < 3; ++a) {
+        if (((faces >> (2 * a)) & 3u) != 0) copy &= ~(1u << a);
+    }
+    return 8 * point + copy;
+}
+
+/// Sum over the first `copies` copies; reflection turns squares over and the slopes along its axes.
+int degree_with_roles(const Octree& tree, const Boundary& boundary, unsigned copies, int first) {
     const auto i = first, j = (first + 1) % 3, k = (first + 2) % 3;
     std::map<std::pair<std::uint32_t, std::uint32_t>, EdgeInZ> edges;
-    for (const Square& square : boundary.squares()) {
-        const bool in_p = square.axis == i && square.slope > 0;
-        boundary.for_each_edge(square, [&](std::uint32_t a, std::uint32_t b) {
-            EdgeInZ& edge = edges[{std::min(a, b), std::max(a, b)}];
-            if (in_p) edge.coefficient += a < b ? 1 : -1;
-            std::int8_t& slope = edge.slopes[static_cast<std::size_t>(square.axis)];
-            CERTA_ASSERT(slope == 0 || slope == square.slope);
-            slope = square.slope;
-        });
+    for (unsigned copy = 0; copy < copies; ++copy) {
+        const int turn = std::popcount(copy) % 2 == 0 ? 1 : -1;
+        for (const Square& square : boundary.squares()) {
+            const auto own = static_cast<std::int8_t>(((copy >> square.axis) & 1u) == 0 ? square.slope : -square.slope);
+            const bool in_p = square.axis == i && own > 0;
+            boundary.for_each_edge(square, [&](std::uint32_t p, std::uint32_t q) {
+                const std::uint32_t a = copied(tree, p, copy), b = copied(tree, q, copy);
+                EdgeInZ& edge = edges[{std::min(a, b), std::max(a, b)}];
+                if (in_p) edge.coefficient += a < b ? turn : -turn;
+                std::int8_t& slope = edge.slopes[static_cast<std::size_t>(square.axis)];
+                CERTA_ASSERT(slope == 0 || slope == own);
+                slope = own;
+            });
+        }
     }
     std::unordered_map<std::uint32_t, int> ends;           // boundary of A
     std::unordered_map<std::uint32_t, std::int8_t> third;  // sign of the k-th derivative at points of Z
@@ -163,15 +181,16 @@ int degree_with_roles(const Boundary& boundary, int first) {
     return degree;
 }
 
-int degree_of(const Octree& tree, const Cluster& cluster) {
+int degree8_of(const Octree& tree, const Cluster& cluster) {
     Boundary boundary(tree);
     for (const std::uint32_t leaf : cluster.leaves) {
         for (int face = 0; face < 6; ++face) boundary.add_face(tree.cell(leaf), face / 2, face % 2);
     }
-    const int degree = degree_with_roles(boundary, 0);
-    CERTA_ASSERT(degree == degree_with_roles(boundary, 1));
-    CERTA_ASSERT(degree == degree_with_roles(boundary, 2));
-    return degree;
+    const unsigned copies = cluster.touches_box ? 8 : 1;
+    const int degree = degree_with_roles(tree, boundary, copies, 0);
+    CERTA_ASSERT(degree == degree_with_roles(tree, boundary, copies, 1));
+    CERTA_ASSERT(degree == degree_with_roles(tree, boundary, copies, 2));
+    return degree * static_cast<int>(8 / copies);
 }
 
 }  // namespace
@@ -206,10 +225,10 @@ std::vector<Cluster> find_clusters(const Octree& tree) {
         const Cell& cell = tree.cell(critical[place]);
         CERTA_ASSERT(cluster.sign == cell.known.sign);
         cluster.leaves.push_back(critical[place]);
-        cluster.outermost = cluster.outermost || tree.touches_boundary(cell);
+        cluster.touches_box = cluster.touches_box || tree.touches_boundary(cell);
     }
     for (Cluster& cluster : clusters) {
-        if (!cluster.outermost) cluster.degree = degree_of(tree, cluster);
+        if (tree.is_clipped() || !cluster.touches_box) cluster.degree8 = degree8_of(tree, cluster);
     }
     return clusters;
 }

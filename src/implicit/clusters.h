@@ -10,9 +10,11 @@ namespace certa::implicit {
 /// Critical leaves that are connected through shared points.
 struct Cluster {
     std::vector<std::uint32_t> leaves;
-    int sign = 0;            ///< of f on all of them
-    bool outermost = false;  ///< touches the box: lies in the unbounded component, its degree is not needed
-    int degree = 0;          ///< of grad f / |grad f| on its boundary
+    int sign = 0;              ///< of f on all of them
+    bool touches_box = false;  ///< a box that the surface may not meet: it lies outside, its degree is not needed
+    /// Of grad f / |grad f| on the boundary of its eight copies, f being continued by reflection across the faces of
+    /// the box: 8 times the degree around a cluster that misses the box.
+    int degree8 = 0;
 };
 
 /// Finds the clusters of an octree whose leaves are all settled, and their degrees.

@@ -7,6 +7,7 @@
 #include "implicit/conditions.h"
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <memory>
 
@@ -146,7 +147,8 @@ private:
     }
 
     /// The surface has a vertex per edge with both signs, an edge per triangle and a face per tetrahedron with both
-    /// signs. Each such triangle lies in two tetrahedra, the box being far away.
+    /// signs. Each such triangle lies in two tetrahedra, in one if it lies in a face of the box: there its copies are
+    /// half as many.
     void count_euler() {
         std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
         std::vector<int> half_triangles(findings_.components.size(), 0);
@@ -161,15 +163,46 @@ private:
                         edges.emplace_back(std::minmax(tetrahedron[i], tetrahedron[j]));
                 }
             }
-            findings_.components[component].euler += 1;
+            findings_.components[component].euler8 += 8;
             half_triangles[component] += positive == 2 ? 4 : 3;
         }
         std::sort(edges.begin(), edges.end());
         edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
-        for (const auto& [a, b] : edges) findings_.components[findings_.component_of_point[a]].euler += 1;
-        for (std::size_t c = 0; c < half_triangles.size(); ++c) {
-            CERTA_ASSERT(half_triangles[c] % 2 == 0);
-            findings_.components[c].euler -= half_triangles[c] / 2;
+        for (const auto& [a, b] : edges) {
+            ComponentOfW& component = findings_.components[findings_.component_of_point[a]];
+            const int faces = std::popcount(t_.box_faces(a) & t_.box_faces(b));
+            component.euler8 += 8 >> faces;
+            component.edge_points += faces == 2 ? 1 : 0;
+        }
+        for (std::size_t c = 0; c < half_triangles.size(); ++c) findings_.components[c].euler8 -= 4 * half_triangles[c];
+        count_loops(edges);
+    }
+
+    /// Edges with both signs in the boundary of the box, united across its triangles with both signs.
+    void count_loops(const std::vector<std::pair<std::uint32_t, std::uint32_t>>& edges) {
+        if (!tree_.is_clipped()) return;
+        const auto place_of = [&](std::uint32_t a, std::uint32_t b) {
+            const std::pair<std::uint32_t, std::uint32_t> edge = std::minmax(a, b);
+            return static_cast<std::uint32_t>(std::lower_bound(edges.begin(), edges.end(), edge) - edges.begin());
+        };
+        core::UnionFind groups(edges.size());
+        for (const auto& t : t_.tetrahedra()) {
+            for (std::size_t skip = 0; skip < 4; ++skip) {
+                const std::uint32_t p = t[(skip + 1) % 4], q = t[(skip + 2) % 4], r = t[(skip + 3) % 4];
+                if ((t_.box_faces(p) & t_.box_faces(q) & t_.box_faces(r)) == 0) continue;
+                const std::array<std::uint32_t, 4> ring{p, q, r, p};
+                std::uint32_t last = none;
+                for (std::size_t i = 0; i < 3; ++i) {
+                    if (t_.sign(ring[i]) == t_.sign(ring[i + 1])) continue;
+                    const std::uint32_t place = place_of(ring[i], ring[i + 1]);
+                    if (last != none) groups.unite(last, place);
+                    last = place;
+                }
+            }
+        }
+        for (std::uint32_t i = 0; i < edges.size(); ++i) {
+            if (groups.find(i) == i && (t_.box_faces(edges[i].first) & t_.box_faces(edges[i].second)) != 0)
+                ++findings_.components[findings_.component_of_point[edges[i].first]].loops;
         }
     }
 
@@ -196,6 +229,7 @@ private:
     void unite_across(std::uint32_t leaf, int axis, int side) {
         const Cell& cell = tree_.cell(leaf);
         const std::uint32_t beyond = tree_.across(cell, axis, side);
+        if (beyond == none && tree_.is_clipped()) return;
         if (beyond != none && !tree_.cell(beyond).is_leaf()) return;  // the smaller leaves beyond do it
         const bool here = t_.is_active(leaf), there = beyond != none && t_.is_active(beyond);
         if (here && there) return;
@@ -230,17 +264,17 @@ private:
             for (const std::uint32_t region : regions) components_of[region].push_back(c);
         }
         for (const Cluster& cluster : clusters_)
-            degree_of_region[region_of_leaf(cluster.leaves.front())] += cluster.degree;
+            degree_of_region[region_of_leaf(cluster.leaves.front())] += cluster.degree8;
         std::vector<std::uint32_t> order;
         std::vector<std::uint32_t> inner(components.size(), none);
         walk_inwards(regions_of, components_of, order, inner);
         CERTA_ASSERT(order.size() == components.size());
         for (std::size_t i = order.size(); i-- > 0;) {
             ComponentOfW& component = components[order[i]];
-            component.degree += degree_of_region[inner[order[i]]];
+            component.degree8 += degree_of_region[inner[order[i]]];
             component.inner_sign = sign_of_region.at(inner[order[i]]);
-            if (component.parent != none) components[component.parent].degree += component.degree;
-            if (2 * component.degree != -component.inner_sign * component.euler) refine_component(order[i]);
+            if (component.parent != none) components[component.parent].degree8 += component.degree8;
+            if (2 * component.degree8 != -component.inner_sign * component.euler8) refine_component(order[i]);
         }
     }
 
@@ -264,6 +298,11 @@ private:
         CERTA_ASSERT(added || known->second == sign);
     }
 
+    /// Where the walk begins: around the box, or at a corner of a box that clips.
+    std::uint32_t outermost_region() const {
+        return tree_.is_clipped() ? region_of_leaf(tree_.leaf_at({0, 0, 0})) : regions_->find(outside());
+    }
+
     std::uint32_t region_of_leaf(std::uint32_t leaf) const {
         if (!t_.is_active(leaf)) return regions_->find(node_of_leaf(leaf));
         const std::uint32_t corner = tree_.points().find(tree_.cell(leaf).low);
@@ -275,7 +314,7 @@ private:
     void walk_inwards(const std::vector<std::vector<std::uint32_t>>& regions_of,
                       const std::map<std::uint32_t, std::vector<std::uint32_t>>& components_of,
                       std::vector<std::uint32_t>& order, std::vector<std::uint32_t>& inner) {
-        std::vector<std::pair<std::uint32_t, std::uint32_t>> work{{regions_->find(outside()), none}};
+        std::vector<std::pair<std::uint32_t, std::uint32_t>> work{{outermost_region(), none}};
         for (std::size_t i = 0; i < work.size(); ++i) {
             const auto [region, around] = work[i];
             const auto found = components_of.find(region);

@@ -24,7 +24,7 @@ public:
     Engine(const Expression& function, const Grid& grid, const ImplicitOptions& options, const RunControl& control)
         : function_(function),
           tape_(function),
-          tree_(grid),
+          tree_(grid, options.clip),
           field_(tape_),
           control_(control),
           certificate_(options.certificate) {
@@ -88,10 +88,13 @@ private:
         result_.outcome = Outcome::done;
         result_.verdict = findings.components.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
         for (const ComponentOfW& component : findings.components) {
-            CERTA_ASSERT(component.euler % 2 == 0 && component.euler <= 2);
-            result_.components.push_back(
-                {1 - component.euler / 2, component.inner_sign, component.degree,
-                 component.parent == none ? std::nullopt : std::optional<std::uint32_t>(component.parent)});
+            CERTA_ASSERT((component.euler8 + 2 * component.edge_points) % 8 == 0);
+            CERTA_ASSERT((component.euler() + component.loops) % 2 == 0 && component.genus() >= 0);
+            result_.components.push_back({component.genus(), 0, 0, std::nullopt, component.loops});
+            if (tree_.is_clipped()) continue;
+            result_.components.back().inner_sign = component.inner_sign;
+            result_.components.back().degree = component.degree8 / 8;
+            if (component.parent != none) result_.components.back().parent = component.parent;
         }
         if (certificate_)
             result_.certificate =
@@ -158,6 +161,8 @@ const char* name_of(ImplicitObstacle::Reason reason) {
             return "singular";
         case Reason::meets_box:
             return "meets_box";
+        case Reason::tangent_to_box:
+            return "tangent_to_box";
         case Reason::undefined:
             return "undefined";
         case Reason::precision:

@@ -47,12 +47,13 @@ Interval second_order_rest(const std::array<Interval, 6>& hessian, const Center&
     return sum;
 }
 
-/// Notes the sign of f and the surest slope; returns whether both are known.
-bool note(const Interval& value, const std::array<Interval, 3>& slopes, Certainty& found) {
+/// Notes the sign of f and the surest slope along the given axes; returns whether nothing is left to find.
+bool note(const Interval& value, const std::array<Interval, 3>& slopes, unsigned axes, Certainty& found) {
     if (found.sign == 0) found.sign = static_cast<std::int8_t>(interval::sign_of(value));
     if (found.slope == 0) {
         double best = 0;
         for (int a = 0; a < 3; ++a) {
+            if (((axes >> a) & 1u) == 0) continue;
             const Interval& slope = slopes[static_cast<std::size_t>(a)];
             const int sign = interval::sign_of(slope);
             const double margin = sign > 0 ? slope.lo : -slope.hi;
@@ -63,7 +64,7 @@ bool note(const Interval& value, const std::array<Interval, 3>& slopes, Certaint
             }
         }
     }
-    return found.sign != 0 && found.slope != 0;
+    return found.sign != 0 && (found.slope != 0 || axes == 0);
 }
 
 }  // namespace
@@ -72,20 +73,20 @@ double Field::value(const Point3& place) { return doubles_.evaluate<0>({place.x,
 
 const Jet<double>& Field::jet(const Point3& place) { return doubles_.evaluate<2>({place.x, place.y, place.z}); }
 
-Certainty Field::certify(const Region& box) {
+Certainty Field::certify(const Region& box, unsigned axes) {
     Certainty found;
     const Jet<Interval>& natural = workspace_.evaluate<1>(box);
     const Interval value = natural.value;
     std::array<Interval, 3> slopes = natural.gradient;
     found.defined = interval::is_defined(value);
     if (!found.defined) return found;
-    if (note(value, slopes, found)) return found;
+    if (note(value, slopes, axes, found)) return found;
     const Center center = center_of(box);
     // A slope alone settles a leaf, but a sign spares the triangulation: all forms are tried for it. They cost little
     // beside that.
     if (found.sign == 0) {
         const Interval at_center = workspace_.evaluate<0>(center.point).value;
-        if (note(interval::intersect(value, first_order(at_center, slopes, center)), slopes, found)) return found;
+        if (note(interval::intersect(value, first_order(at_center, slopes, center)), slopes, axes, found)) return found;
     }
     const std::array<Interval, 6> hessian = workspace_.evaluate<2>(box).hessian;
     const Jet<Interval>& middle = workspace_.evaluate<1>(center.point);
@@ -98,7 +99,7 @@ Certainty Field::certify(const Region& box) {
     }
     const Interval second = first_order(middle.value, middle.gradient, center) + second_order_rest(hessian, center);
     note(interval::intersect(value, interval::intersect(first_order(middle.value, slopes, center), second)), slopes,
-         found);
+         axes, found);
     return found;
 }
 

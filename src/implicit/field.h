@@ -26,7 +26,8 @@ public:
     /// Natural enclosures first, then mean values with the gradient, then with the Hessian where neither sign nor slope
     /// was found. A sign without a slope is looked at with the Hessian too: a leaf without a slope is critical and
     /// hinders the growth of W.
-    Certainty certify(const Region& box);
+    /// Slopes are looked for along the given axes only, a bit each.
+    Certainty certify(const Region& box, unsigned axes = 7);
     /// The proved sign of f on the convex hull of points within the box; 0: not proved.
     int sign_on(const Region& box);
     /// The value of f in doubles.

@@ -3,6 +3,7 @@
 // about {|f| < c} and far larger near critical values; nothing in Lemma 51 needs that.
 #include "implicit/growth.h"
 
+#include <bit>
 #include <deque>
 
 namespace certa::implicit {
@@ -40,12 +41,44 @@ bool LinkTest::may_join(const Triangulation& triangulation, const std::vector<ch
             if (inside_[a] == inside_[b]) parents_[find(a)] = find(b);
         }
     }
+    const bool closed = triangulation.box_faces(point) == 0 || close_rim(triangulation, point);
     int parts_inside = 0, parts_outside = 0;
     for (std::uint32_t i = 0; i < link_.size(); ++i) {
         index_[link_[i]] = none;
         if (parents_[i] == i) ++(inside_[i] ? parts_inside : parts_outside);
     }
-    return parts_inside == 1 && parts_outside == 1;
+    return closed && parts_inside == 1 && parts_outside == 1;
+}
+
+/// Unites the points of the rim that are outside, as the cone over it does, and says whether the rim changes kind as
+/// often as it must: twice in the face of the box, or once in each of the two faces at an edge of the box.
+bool LinkTest::close_rim(const Triangulation& triangulation, std::uint32_t point) {
+    const unsigned faces = triangulation.box_faces(point);
+    const int count = std::popcount(faces);
+    if (count == 3) return false;
+    std::uint32_t outside = none;
+    std::array<int, 6> changes{};
+    for (const std::uint32_t t : triangulation.around(point)) {
+        const auto& tetrahedron = triangulation.tetrahedra()[t];
+        for (std::size_t i = 0; i < 4; ++i) {
+            const unsigned common = triangulation.box_faces(tetrahedron[i]) & faces;
+            if (common == 0 || tetrahedron[i] == point) continue;
+            const std::uint32_t a = index_[tetrahedron[i]];
+            if (!inside_[a]) {
+                if (outside != none) parents_[find(a)] = find(outside);
+                outside = a;
+            }
+            for (std::size_t j = i + 1; j < 4; ++j) {
+                if (tetrahedron[j] == point || inside_[a] == inside_[index_[tetrahedron[j]]]) continue;
+                const unsigned shared = common & triangulation.box_faces(tetrahedron[j]);
+                for (unsigned face = 0; face < 6; ++face) changes[face] += (shared >> face) & 1u;
+            }
+        }
+    }
+    for (unsigned face = 0; face < 6; ++face) {
+        if (((faces >> face) & 1u) != 0 && changes[face] != (count == 1 ? 2 : 1)) return false;
+    }
+    return true;
 }
 
 Growth grow(const Triangulation& triangulation) {

@@ -18,8 +18,10 @@ struct Growth {
 /// Definition: a point v may join when, in its link, the part spanned by points of the other sign and marked points is
 /// non-empty and
 ///             connected, and so is the part spanned by the other points (then the first part is contractible, the link
-///             being a sphere). Each step adds a cone over a contractible set, so W collapses to the surface of sign
-///             changes (Lemma 51), once every tetrahedron with both signs has all its points marked.
+///             being a sphere). On the boundary of a box that clips, the link is a disk: it is closed by a cone from an
+///             unmarked point over its rim, and the rim must change kind exactly twice, on an edge of the box exactly
+///             once in each of the two faces. Each step adds a cone over a contractible set, so W collapses to the
+///             surface of sign changes (Lemma 51), once every tetrahedron with both signs has all its points marked.
 Growth grow(const Triangulation& triangulation);
 
 /// Whether one point may join now; the test of the definition above.
@@ -33,6 +35,7 @@ public:
 private:
     std::uint32_t local(std::uint32_t point);
     std::uint32_t find(std::uint32_t i);
+    bool close_rim(const Triangulation& triangulation, std::uint32_t point);
     std::vector<std::uint32_t> index_, link_, parents_;
     std::vector<char> inside_;
 };

@@ -47,7 +47,9 @@ void PointMap::grow() {
     }
 }
 
-Octree::Octree(const Grid& grid) : grid_(grid), cells_(1) { add_corners(cells_.front()); }
+Octree::Octree(const Grid& grid, bool clipped) : grid_(grid), clipped_(clipped), cells_(1) {
+    add_corners(cells_.front());
+}
 
 GridPoint Octree::high_of(const Cell& cell) const {
     const Coordinate size = size_of(cell);
@@ -64,6 +66,20 @@ bool Octree::on_boundary(const GridPoint& p) const {
         if (c == 0 || c == grid_.side()) return true;
     }
     return false;
+}
+
+unsigned Octree::box_faces(const GridPoint& p) const {
+    unsigned faces = 0;
+    for (unsigned a = 0; a < 3; ++a) faces |= (p[a] == 0 ? 1u : p[a] == grid_.side() ? 2u : 0u) << (2 * a);
+    return faces;
+}
+
+unsigned Octree::free_axes(const Cell& cell) const {
+    if (!clipped_) return 7;
+    const unsigned faces = box_faces(cell.low) | box_faces(high_of(cell));
+    unsigned axes = 0;
+    for (unsigned a = 0; a < 3; ++a) axes |= ((faces >> (2 * a)) & 3u) == 0 ? 1u << a : 0u;
+    return axes;
 }
 
 bool Octree::touches_boundary(const Cell& cell) const { return on_boundary(cell.low) || on_boundary(high_of(cell)); }

@@ -42,9 +42,11 @@ private:
 
 class Octree {
 public:
-    explicit Octree(const Grid& grid);
+    /// `clipped`: the surface may meet the boundary of the box (docs/implicit-clip.md), else it may not.
+    explicit Octree(const Grid& grid, bool clipped = false);
 
     const Grid& grid() const { return grid_; }
+    bool is_clipped() const { return clipped_; }
     const std::vector<Cell>& cells() const { return cells_; }
     Cell& cell(std::uint32_t id) { return cells_[id]; }
     const Cell& cell(std::uint32_t id) const { return cells_[id]; }
@@ -74,12 +76,18 @@ public:
         return id != none && is_corner(id);
     }
     bool on_boundary(const GridPoint& p) const;
+    /// The faces of the box that hold a point: bit 2 a for the low one across axis a, bit 2 a + 1 for the high one.
+    unsigned box_faces(const GridPoint& p) const;
+    /// The axes whose derivatives may settle a leaf, a bit each: of a clipped box those along which a leaf may move
+    /// without leaving the faces of the box that it touches, else all.
+    unsigned free_axes(const Cell& cell) const;
 
     std::vector<std::uint32_t> leaves() const;
 
 private:
     void add_corners(const Cell& cell);
     Grid grid_;
+    bool clipped_;
     std::vector<Cell> cells_;
     PointMap points_;
     std::vector<char> is_corner_;

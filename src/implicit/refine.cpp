@@ -22,7 +22,7 @@ void certify(Octree& tree, const std::vector<std::uint32_t>& ids, const expressi
         Field field(tape);
         for (std::size_t i = begin; i < end; ++i) {
             Cell& cell = tree.cell(ids[i]);
-            const Certainty found = field.certify(tree.region_of(cell));
+            const Certainty found = field.certify(tree.region_of(cell), tree.free_axes(cell));
             if (found.sign != 0) cell.known.sign = found.sign;
             if (found.slope != 0 && cell.known.slope == 0) {
                 cell.known.slope = found.slope;
@@ -34,12 +34,17 @@ void certify(Octree& tree, const std::vector<std::uint32_t>& ids, const expressi
 }
 
 bool is_open(const Octree& tree, const Cell& cell) {
-    return !cell.is_settled() || (cell.known.sign == 0 && tree.touches_boundary(cell));
+    return !cell.is_settled() || (cell.known.sign == 0 && !tree.is_clipped() && tree.touches_boundary(cell));
 }
 
-Reason reason_of(const Octree& tree, const Cell& cell) {
+/// Of a clipped box, a leaf that some derivative would settle if it did not touch the box: the surface is, or seems,
+/// tangent to it.
+Reason reason_of(const Octree& tree, const Cell& cell, Field& field) {
     if (!cell.known.defined) return Reason::undefined;
-    return tree.touches_boundary(cell) && cell.is_settled() ? Reason::meets_box : Reason::singular;
+    if (!tree.touches_boundary(cell)) return Reason::singular;
+    if (tree.is_clipped())
+        return field.certify(tree.region_of(cell)).slope != 0 ? Reason::tangent_to_box : Reason::singular;
+    return cell.is_settled() ? Reason::meets_box : Reason::singular;
 }
 
 /// Both signs are proved at corners of the leaf's face in the boundary of the box.
@@ -63,21 +68,28 @@ bool crosses_box(const Octree& tree, const Cell& cell, Field& field) {
     return false;
 }
 
-/// How far an open leaf seems from staying open, in units of its size: where f, or the derivatives that would settle
-/// it, are smallest. A guess in doubles that decides only where to look.
-double promise(const Octree& tree, const Cell& cell, Field& field) {
+/// The centre of a leaf, moved onto the faces of the box that the leaf touches.
+GridPoint foot_of(const Octree& tree, const Cell& cell) {
     GridPoint p = tree.center_of(cell);
-    const double size = interval::width(tree.region_of(cell)[0]);
-    if (cell.known.slope == 0) {
-        const auto& jet = field.jet(tree.grid().place(p));
-        return std::fabs(jet.value) / size + std::hypot(jet.gradient[0], jet.gradient[1], jet.gradient[2]);
-    }
-    // Open because it touches the box: what counts is f on the box.
     for (std::size_t a = 0; a < 3; ++a) {
         if (cell.low[a] == 0) p[a] = 0;
         if (cell.low[a] + tree.size_of(cell) == tree.grid().side()) p[a] = tree.grid().side();
     }
-    return std::fabs(field.value(tree.grid().place(p))) / size;
+    return p;
+}
+
+/// How far an open leaf seems from staying open, in units of its size: where f, or the derivatives that would settle
+/// it, are smallest. A guess in doubles that decides only where to look.
+double promise(const Octree& tree, const Cell& cell, Field& field) {
+    const double size = interval::width(tree.region_of(cell)[0]);
+    const bool settled = cell.known.slope != 0;  // open because it touches the box: what counts is f on the box
+    const Point3 place = tree.grid().place(tree.is_clipped() || settled ? foot_of(tree, cell) : tree.center_of(cell));
+    if (settled) return std::fabs(field.value(place)) / size;
+    const auto& jet = field.jet(place);
+    const unsigned axes = tree.free_axes(cell);
+    double square = 0;
+    for (std::size_t a = 0; a < 3; ++a) square += ((axes >> a) & 1u) * jet.gradient[a] * jet.gradient[a];
+    return std::fabs(jet.value) / size + std::sqrt(square);
 }
 
 /// Follows the most promising open leaves downwards; one that is open at the last depth.
@@ -93,7 +105,7 @@ std::optional<Cell> probe(const Octree& tree, const Cell& start, int max_depth, 
             child.low = {parent.low[0] + (c & 1u) * half, parent.low[1] + ((c >> 1) & 1u) * half,
                          parent.low[2] + ((c >> 2) & 1u) * half};
             child.depth = static_cast<std::int8_t>(parent.depth + 1);
-            child.known = field.certify(tree.region_of(child));
+            child.known = field.certify(tree.region_of(child), tree.free_axes(child));
             if (parent.known.slope != 0) child.known.slope = parent.known.slope;
             if (!is_open(tree, child)) continue;
             if (child.depth >= max_depth) return child;
@@ -123,17 +135,19 @@ std::array<double, 3> solve(const double (&a)[3][3], const double (&b)[3]) {
     return d;
 }
 
-/// Goes from a place towards one where f and its gradient vanish together: Gauss-Newton with a little damping on the
-/// four equations f / size = 0, grad f = 0. A guess, like all of this.
-Point3 towards_singular(Point3 place, double size, Field& field) {
+/// Goes from a place along the given axes towards one where f and its derivatives along them vanish together:
+/// Gauss-Newton with a little damping on the equations f / size = 0, grad f = 0. A guess, like all of this.
+Point3 towards_singular(Point3 place, double size, unsigned axes, Field& field) {
     for (int round = 0; round < 60; ++round) {
         const auto& jet = field.jet(place);
         double normal[3][3] = {}, right[3] = {};
         for (int row = 0; row < 4; ++row) {
+            if (row < 3 && ((axes >> row) & 1u) == 0) continue;
             double slopes[3];
             for (int k = 0; k < 3; ++k)
-                slopes[k] = row == 3 ? jet.gradient[static_cast<std::size_t>(k)] / size
-                                     : jet.hessian[static_cast<std::size_t>(expression::hessian_index[row][k])];
+                slopes[k] = ((axes >> k) & 1u) == 0 ? 0.0
+                            : row == 3              ? jet.gradient[static_cast<std::size_t>(k)] / size
+                                       : jet.hessian[static_cast<std::size_t>(expression::hessian_index[row][k])];
             const double value = row == 3 ? jet.value / size : jet.gradient[static_cast<std::size_t>(row)];
             for (int i = 0; i < 3; ++i) {
                 right[i] -= slopes[i] * value;
@@ -158,11 +172,12 @@ std::optional<Cell> open_cell_at(const Octree& tree, const Point3& place, int ma
     for (int a = 0; a < 3; ++a) {
         const double low = tree.grid().place(a, 0), high = tree.grid().place(a, tree.grid().side());
         const double t = (coordinates[a] - low) / (high - low);
-        if (!(t >= 0) || !(t < 1)) return std::nullopt;
-        cell.low[static_cast<std::size_t>(a)] = static_cast<Coordinate>(std::ldexp(t, max_depth))
+        if (!(t >= 0) || !(t <= 1)) return std::nullopt;
+        const auto last = static_cast<Coordinate>(std::ldexp(1.0, max_depth)) - 1;
+        cell.low[static_cast<std::size_t>(a)] = std::min(last, static_cast<Coordinate>(std::ldexp(t, max_depth)))
                                                 << (tree.grid().resolution() - max_depth);
     }
-    cell.known = field.certify(tree.region_of(cell));
+    cell.known = field.certify(tree.region_of(cell), tree.free_axes(cell));
     if (!is_open(tree, cell)) return std::nullopt;
     return cell;
 }
@@ -196,8 +211,8 @@ public:
 
 private:
     std::optional<Obstacle> look_ahead(const std::vector<std::uint32_t>& open, int depth) {
-        if (depth >= limits_.max_depth) return Obstacle{reason_of(tree_, tree_.cell(open.front())), open};
-        if (depth >= 3) {
+        if (depth >= limits_.max_depth) return Obstacle{reason_of(tree_, tree_.cell(open.front()), field_), open};
+        if (depth >= 3 && !tree_.is_clipped()) {
             for (const std::uint32_t id : open) {
                 const Cell& cell = tree_.cell(id);
                 if (cell.known.sign == 0 && tree_.touches_boundary(cell) && crosses_box(tree_, cell, field_))
@@ -208,10 +223,11 @@ private:
             const std::uint32_t id = most_promising(open);
             const Cell& cell = tree_.cell(id);
             const double size = interval::width(tree_.region_of(cell)[0]);
-            const Point3 guess = towards_singular(tree_.grid().place(tree_.center_of(cell)), size, field_);
+            const GridPoint start = tree_.is_clipped() ? foot_of(tree_, cell) : tree_.center_of(cell);
+            const Point3 guess = towards_singular(tree_.grid().place(start), size, tree_.free_axes(cell), field_);
             std::optional<Cell> found = open_cell_at(tree_, guess, limits_.max_depth, field_);
             if (!found) found = probe(tree_, cell, limits_.max_depth, field_);
-            if (found) return Obstacle{reason_of(tree_, *found), {split_down_to(*found)}};
+            if (found) return Obstacle{reason_of(tree_, *found, field_), {split_down_to(*found)}};
         }
         return std::nullopt;
     }

@@ -149,7 +149,8 @@ void Triangulation::choose_candidates(const Octree& tree) {
     for (std::size_t i = 0; i < active_.size(); ++i) {
         if (tree.cell(active_[i]).known.sign != 0) continue;
         for (const Tetrahedron& t : tetrahedra_of(i)) {
-            for (const std::uint32_t point : t) may_join_[point] = tree.on_boundary(tree.points()[point]) ? 0 : 1;
+            for (const std::uint32_t point : t)
+                may_join_[point] = tree.is_clipped() || !tree.on_boundary(tree.points()[point]) ? 1 : 0;
         }
     }
     for (std::size_t i = 0; i < active_.size(); ++i) {
@@ -158,6 +159,10 @@ void Triangulation::choose_candidates(const Octree& tree) {
             for (const std::uint32_t point : t) may_join_[point] = 0;
         }
     }
+    if (!tree.is_clipped()) return;
+    box_faces_.resize(point_count());
+    for (std::uint32_t point = 0; point < point_count(); ++point)
+        box_faces_[point] = static_cast<std::uint8_t>(tree.box_faces(tree.points()[point]));
 }
 
 void Triangulation::index_stars() {

@@ -39,8 +39,10 @@ public:
 
     std::size_t point_count() const { return sign_.size(); }
     int sign(std::uint32_t point) const { return sign_[point]; }
-    /// Points that may join W: of an open leaf, of no critical leaf, not on the boundary of the box.
+    /// Points that may join W: of an open leaf, of no critical leaf, not on the boundary of the box unless that clips.
     bool may_join(std::uint32_t point) const { return may_join_[point] != 0; }
+    /// The faces of the box that hold a point (Octree::box_faces); 0 unless the box clips.
+    unsigned box_faces(std::uint32_t point) const { return box_faces_.empty() ? 0 : box_faces_[point]; }
     /// Tetrahedra around a point that may join.
     std::span<const std::uint32_t> around(std::uint32_t point) const {
         return std::span(around_).subspan(around_offsets_[point], around_offsets_[point + 1] - around_offsets_[point]);
@@ -58,6 +60,7 @@ private:
     std::vector<std::uint32_t> active_, leaf_of_, offsets_, around_, around_offsets_;
     std::vector<char> is_active_, may_join_;
     std::vector<std::int8_t> sign_;
+    std::vector<std::uint8_t> box_faces_;
     std::vector<Tetrahedron> tetrahedra_;
 };
 

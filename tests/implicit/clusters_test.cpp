@@ -24,8 +24,8 @@ TEST_P(ClusterDegree, IsTheIndex) {
     for (int depth = 0; depth < 5; ++depth) ASSERT_FALSE(split_all(tree, tree.leaves(), tape, limits, {}));
     int degree = 0, inner = 0;
     for (const Cluster& cluster : find_clusters(tree)) {
-        if (cluster.outermost) continue;
-        degree += cluster.degree;
+        if (cluster.touches_box) continue;
+        degree += cluster.degree8 / 8;
         ++inner;
     }
     EXPECT_EQ(degree, GetParam().degree) << inner << " inner clusters";

@@ -49,17 +49,17 @@ TEST_F(Conditions, HoldForTheTorus) {
     EXPECT_EQ(found.condition, nullptr);
     ASSERT_EQ(found.components.size(), 1u);
     EXPECT_EQ(found.components[0].euler, 0);
-    EXPECT_EQ(found.components[0].degree, 0);
+    EXPECT_EQ(found.components[0].degree8, 0);
     EXPECT_EQ(found.components[0].inner_sign, -1);
 }
 
 TEST_F(Conditions, ADegreeThatIsOffIsFound) {
     for (Cluster& cluster : clusters_) {
         if (cluster.sign > 0) continue;
-        cluster.degree += 1;
+        cluster.degree8 += 8;
         EXPECT_STREQ(check().condition, "degree");
         EXPECT_FALSE(check().offenders.empty());
-        cluster.degree -= 1;
+        cluster.degree8 -= 8;
     }
     EXPECT_EQ(check().condition, nullptr);
 }
