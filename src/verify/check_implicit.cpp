@@ -4,7 +4,7 @@
 // Plan: claims of leaves (parallel); signs; replay of the marks; tetrahedra with both signs; frontier faces (parallel);
 // degrees of clusters; components of W and of its complement, and the balance between them; the mesh
 // (implicit_mesh.cpp).
-#include <certa/implicit.h>
+#include <certa/implicit_mesh.h>
 
 #include <algorithm>
 #include <map>
@@ -17,6 +17,7 @@
 #include "verify/implicit_function.h"
 #include "verify/implicit_mesh.h"
 #include "verify/report.h"
+#include "verify/surface_in_w.h"
 
 namespace certa::verify {
 namespace {
@@ -52,7 +53,14 @@ public:
         check_frontier();
         if (result_.violation_count == 0) check_balance();
     }
-    const std::vector<char>& marked() const { return marked_; }
+    /// W and its components, for judging meshes; to be called once, after a run without violations.
+    VerifiedW verified() {
+        VerifiedW w;
+        w.marked = std::move(marked_);
+        for (std::uint32_t p = 0; p < c_.points().size(); ++p) w.part_of_point.push_back(regions_->of(p));
+        w.components = std::move(verified_);
+        return w;
+    }
 
 private:
     void add(const std::string& text) {
@@ -378,6 +386,7 @@ private:
                 add("the degree " + std::to_string(inside) + " does not match the Euler characteristic " +
                     std::to_string(euler) + ", at " + show_point(id));
             result_.genera.push_back(static_cast<int>(1 - euler / 2));
+            verified_.push_back({id, result_.genera.back(), sign_of_region.at(inner), inner, region, around});
             degree += inside;
         }
         return degree;
@@ -391,24 +400,47 @@ private:
     std::vector<std::uint32_t> star_first_, star_;
     std::unique_ptr<Parts> regions_;
     std::uint32_t outside_ = 0;
+    std::vector<VerifiedComponent> verified_;
 };
 
-void check(const TriangleMesh& mesh, std::string_view text, std::string_view certificate_text,
-           const RunControl& control, ImplicitCheck& result) {
+void add_to(ImplicitCheck& result, std::string problem) {
+    ++result.violation_count;
+    if (result.violations.size() < 100) result.violations.push_back(std::move(problem));
+}
+
+/// Verifies W; a mesh whose vertices the certificate does not place on edges of T, or `any` mesh, is judged by what it
+/// is.
+MeshFindings check(const TriangleMesh& mesh, std::string_view text, std::string_view certificate_text, bool any,
+                   const RunControl& control, ImplicitCheck& result) {
     const ImplicitFunction function(text);
     const ImplicitCertificate certificate = read_certificate(certificate_text);
     const ImplicitComplex complex(certificate);
-    Check(function, complex, control, result).run();
+    Check check(function, complex, control, result);
+    check.run();
     const std::vector<std::int64_t> genera(result.genera.begin(), result.genera.end());
-    if (result.violation_count == 0 && genera != certificate.genera) {
-        ++result.violation_count;
-        result.violations.push_back("the certificate names other genera");
-    }
-    for (std::string& problem : check_mesh_on_complex(mesh, complex, certificate)) {
-        ++result.violation_count;
-        if (result.violations.size() < 100) result.violations.push_back(std::move(problem));
-    }
+    if (result.violation_count == 0 && genera != certificate.genera)
+        add_to(result, "the certificate names other genera");
     result.triangles_checked = mesh.triangles.size();
+    if (any || (certificate.vertex_edges.empty() && !mesh.triangles.empty())) {
+        if (result.violation_count != 0) return {};
+        return judge_mesh(mesh, complex, check.verified(), control);
+    }
+    for (std::string& problem : check_mesh_on_complex(mesh, complex, certificate)) add_to(result, std::move(problem));
+    MeshFindings on_edges;
+    on_edges.faces_positive = true;
+    return on_edges;
+}
+
+/// What cannot be read is a violation.
+template <class Body>
+void reading(ImplicitCheck& result, const Body& body) {
+    try {
+        body();
+    } catch (const UnreadableFunction& error) {
+        add_to(result, std::string("the function cannot be read: ") + error.what());
+    } catch (const UnreadableCertificate& error) {
+        add_to(result, std::string("the certificate cannot be read: ") + error.what());
+    }
 }
 
 }  // namespace
@@ -419,22 +451,55 @@ namespace certa {
 ImplicitCheck check_implicit(const TriangleMesh& mesh, std::string_view function, std::string_view certificate,
                              const RunControl& control) {
     ImplicitCheck result;
-    const auto refuse = [&](const std::string& reason) {
-        ++result.violation_count;
-        result.violations.push_back(reason);
-    };
-    try {
-        verify::check(mesh, function, certificate, control, result);
-    } catch (const verify::UnreadableFunction& error) {
-        refuse(std::string("the function cannot be read: ") + error.what());
-    } catch (const verify::UnreadableCertificate& error) {
-        refuse(std::string("the certificate cannot be read: ") + error.what());
-    }
+    verify::reading(result, [&] {
+        verify::MeshFindings found = verify::check(mesh, function, certificate, false, control, result);
+        for (std::string& reason : found.refuting) verify::add_to(result, std::move(reason));
+        for (std::string& reason : found.hindering) verify::add_to(result, std::move(reason));
+        if (result.ok() && !found.faces_positive) verify::add_to(result, "the mesh faces the negative side of f");
+    });
     if (result.ok())
         result.verdict = result.genera.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
     else
         result.genera.clear();
     return result;
+}
+
+ImplicitMeshCheck judge_implicit_mesh(const TriangleMesh& mesh, std::string_view function, std::string_view certificate,
+                                      const RunControl& control) {
+    ImplicitCheck check;
+    verify::MeshFindings found;
+    verify::reading(check, [&] { found = verify::check(mesh, function, certificate, true, control, check); });
+    ImplicitMeshCheck result;
+    result.leaves_checked = check.leaves_checked;
+    result.marks_checked = check.marks_checked;
+    result.mesh_genera = std::move(found.genera);
+    for (const std::uint32_t t : found.triangles) {
+        if (result.triangles.size() < 1000) result.triangles.push_back(t);
+    }
+    result.triangle_count = found.triangles.size();
+    result.surface_known = check.ok();
+    if (!check.ok()) {
+        result.reasons = std::move(check.violations);
+        return result;
+    }
+    result.surface_genera = std::move(check.genera);
+    result.faces_positive = found.faces_positive;
+    result.verdict = !found.refuting.empty()    ? ImplicitMeshVerdict::refuted
+                     : !found.hindering.empty() ? ImplicitMeshVerdict::undecided
+                                                : ImplicitMeshVerdict::certified;
+    result.reasons = !found.refuting.empty() ? std::move(found.refuting) : std::move(found.hindering);
+    return result;
+}
+
+const char* name_of(ImplicitMeshVerdict verdict) {
+    switch (verdict) {
+        case ImplicitMeshVerdict::certified:
+            return "certified";
+        case ImplicitMeshVerdict::refuted:
+            return "refuted";
+        default:
+            return "undecided";
+    }
 }
 
 }  // namespace certa

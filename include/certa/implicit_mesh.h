@@ -1,0 +1,44 @@
+#pragma once
+// Triangle meshes of any origin against the zero set of a function.
+#include <certa/implicit.h>
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace certa {
+
+enum class ImplicitMeshVerdict : std::uint8_t {
+    certified,  ///< the mesh is isotopic to the zero set in the box
+    refuted,    ///< it is not: it is no embedded closed surface, or its components, genera or their nesting differ
+    undecided,  ///< nothing is claimed
+};
+const char* name_of(ImplicitMeshVerdict verdict);
+
+/// What is proved about a mesh that any program may have made.
+struct ImplicitMeshCheck {
+    ImplicitMeshVerdict verdict = ImplicitMeshVerdict::undecided;
+    std::vector<std::string> reasons;      ///< why it is refuted, or what hinders: at most 100
+    std::vector<std::uint32_t> triangles;  ///< named by the reasons, 0-based: the first 1000
+    std::size_t triangle_count = 0;
+    bool surface_known = false;       ///< the topology of the zero set is proved
+    std::vector<int> mesh_genera;     ///< per component, sorted; empty where the mesh is no closed surface
+    std::vector<int> surface_genera;  ///< of the zero set, sorted; meaningful if surface_known
+    bool faces_positive = false;      ///< certified, and every triangle faces f > 0
+    Outcome outcome = Outcome::done;
+    std::vector<ImplicitObstacle> obstacles;  ///< where the topology of the zero set could not be proved
+    Point3 low, high;                         ///< the box of the proof
+    std::size_t leaves_checked = 0, marks_checked = 0;
+};
+
+/// Decides by the W of a certificate, which is verified first, what a mesh is to the zero set of a function.
+///
+/// Input:      any triangle mesh, vertices shared; the function's text; a certificate of mesh_implicit for any mesh.
+/// Result:     undecided where the certificate does not prove what it claims, or the mesh leaves W.
+/// Guarantee:  exact on the doubles of the mesh (docs/implicit-theorem.md, "any mesh"); shares no code with
+///             mesh_implicit.
+ImplicitMeshCheck judge_implicit_mesh(const TriangleMesh& mesh, std::string_view function, std::string_view certificate,
+                                      const RunControl& control = {});
+
+}  // namespace certa
