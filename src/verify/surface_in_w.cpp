@@ -91,9 +91,9 @@ private:
         std::vector<Side> sides;
         for (std::uint32_t t = 0; t < surface_.triangles.size(); ++t) {
             for (std::size_t i = 0; i < 3; ++i) {
-                const auto [a, b] =
-                    std::minmax(index_of(surface_.triangles[t][i]), index_of(surface_.triangles[t][(i + 1) % 3]));
-                sides.push_back({a, b, t});
+                const std::uint32_t p = index_of(surface_.triangles[t][i]);
+                const std::uint32_t q = index_of(surface_.triangles[t][(i + 1) % 3]);
+                sides.push_back({std::min(p, q), std::max(p, q), t});
             }
         }
         std::sort(sides.begin(), sides.end());
