@@ -1,0 +1,481 @@
+// Vertices off the surface: chords of an arc are best when they are half inside and half outside.
+//
+// A round: cut the polygons along the diagonals nearest to the input; for samples of the triangles find the nearest
+// points of the input, for samples of the input the nearest points of the triangles (a cap that the coarse mesh leaves
+// out shows only there). Each pair says: along the input's normal there, the coarse point, a weighted mean of three
+// vertices, should move by so much. The sum of squares is lowered by conjugate gradients over the vertices, with a weak
+// spring against sliding along the surface. A step is kept if the measured distances agree; else half of it is tried.
+// Lengths are scaled so that the input's box has diagonal 1.
+#include "remeshing/placement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+#include "core/parallel.h"
+#include "core/random.h"
+#include "core/triangle_tree.h"
+#include "core/vector3.h"
+#include "remeshing/triangulate.h"
+
+namespace certa::remeshing {
+namespace {
+
+using core::NearestPoint;
+using core::TriangleTree;
+
+constexpr double least_agreement = 0.25;  // cosine between the normals of the two ends of a pair
+constexpr int half_steps = 5;
+
+/// The point of triangle `triangle` with weights w, and what is over there.
+struct Pair {
+    Index triangle = no_index;
+    std::array<double, 3> w{};
+    Point3 normal;          // of the input
+    double along = 0.0;     // from the input to the coarse mesh, along the normal
+    double distance = 0.0;  // to the nearest point
+    double weight = 0.0;    // both sides have a sum of 1/2; 0 where the sheets do not correspond
+};
+
+struct Curve {
+    std::vector<Point3> points;
+    std::vector<Triangle> segments;  // (a, b, b)
+    std::unique_ptr<TriangleTree> tree;
+};
+
+Point3 unit(const Point3& v) {
+    const double length = norm(v);
+    return length > 0.0 ? (1.0 / length) * v : Point3{};
+}
+
+class Placement {
+public:
+    Placement(const TriangleMesh& input, std::span<const FeatureEdge> features, CoarseMesh& mesh,
+              const PlacementOptions& options, const RunControl& control)
+        : input_(input), mesh_(mesh), options_(options), control_(control) {
+        scale_input();
+        for (Point3& p : mesh_.points) p = scale_ * (p - origin_);
+        tree_ = std::make_unique<TriangleTree>(input_.positions, input_.triangles);
+        for (const Triangle& t : input_.triangles) {
+            const Point3 &a = position(t[0]), &b = position(t[1]), &c = position(t[2]);
+            const Point3 area = cross(b - a, c - a);
+            areas_.push_back(0.5 * norm(area));
+            normals_.push_back(unit(area));
+        }
+        build_curves(features);
+        incident_.resize(mesh_.points.size());
+        for (std::size_t q = 0; q < mesh_.polygon_count(); ++q)
+            for (const Index v : mesh_.polygon(q)) incident_[v].push_back(static_cast<Index>(q));
+    }
+
+    PlacementReport run() {
+        PlacementReport report;
+        measure(2.0);
+        report.rms_before = rms_, report.largest_before = largest_;
+        const std::uint32_t all = options_.rounds + options_.peak_rounds;
+        for (std::uint32_t round = 0; round < all && !control_.cancelled(); ++round) {
+            const bool is_peak = round >= options_.rounds;
+            if (round == options_.rounds) objective_ = power_mean(options_.peak_power);
+            control_.report("placement", double(round) / all);
+            if (improve(is_peak ? options_.peak_power : 2.0)) {
+                ++report.rounds;
+            } else if (is_peak || options_.peak_rounds == 0) {
+                break;
+            } else {
+                round = options_.rounds - 1;
+            }
+        }
+        report.rms_after = rms_ / scale_, report.largest_after = largest_ / scale_;
+        report.rms_before /= scale_, report.largest_before /= scale_;
+        if (control_.cancelled()) report.outcome = Outcome::cancelled;
+        finish();
+        return report;
+    }
+
+private:
+    const Point3& position(VertexId v) const { return input_.positions[index_of(v)]; }
+
+    void scale_input() {
+        Point3 low = input_.positions.front(), high = low;
+        for (const Point3& p : input_.positions) {
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        }
+        origin_ = 0.5 * (low + high);
+        const double diagonal = distance(low, high);
+        scale_ = diagonal > 0.0 ? 1.0 / diagonal : 1.0;
+        for (Point3& p : input_.positions) p = scale_ * (p - origin_);
+    }
+
+    void build_curves(std::span<const FeatureEdge> features) {
+        for (const FeatureEdge& edge : features) {
+            if (edge.curve >= curves_.size()) curves_.resize(edge.curve + 1);
+            Curve& curve = curves_[edge.curve];
+            const auto first = static_cast<std::uint32_t>(curve.points.size());
+            curve.points.push_back(input_.positions[edge.a]);
+            curve.points.push_back(input_.positions[edge.b]);
+            curve.segments.push_back({VertexId{first}, VertexId{first + 1}, VertexId{first + 1}});
+        }
+        for (Curve& curve : curves_) curve.tree = std::make_unique<TriangleTree>(curve.points, curve.segments);
+    }
+    const Curve* curve_of(Index v) const {
+        if (mesh_.kinds[v] != VertexKind::crease && mesh_.kinds[v] != VertexKind::boundary) return nullptr;
+        const Index c = mesh_.curves[v];
+        return c < curves_.size() && !curves_[c].tree->empty() ? &curves_[c] : nullptr;
+    }
+    /// Vertices bound to a curve that is not there stay, as corners do.
+    bool is_fixed(Index v) const { return mesh_.kinds[v] != VertexKind::smooth && curve_of(v) == nullptr; }
+
+    Point3 tangent_at(const Curve& curve, const Point3& p) const {
+        const Index s = curve.tree->find_nearest(p).triangle;
+        return unit(curve.points[2 * s + 1] - curve.points[2 * s]);
+    }
+
+    // Pairs ------------------------------------------------------------------------------------------------------
+
+    /// The same points on the input in every round, by area and stratified.
+    void sample_input(std::size_t count) {
+        std::vector<double> before(areas_.size() + 1, 0.0);
+        for (std::size_t t = 0; t < areas_.size(); ++t) before[t + 1] = before[t] + areas_[t];
+        core::Random random(options_.seed);
+        input_samples_.clear();
+        for (std::size_t k = 0; k < count; ++k) {
+            const double goal = (double(k) + random.uniform()) / double(count) * before.back();
+            const auto after = std::upper_bound(before.begin() + 1, before.end() - 1, goal);
+            const auto t = static_cast<Index>(after - before.begin() - 1);
+            const double root = std::sqrt(random.uniform()), v = random.uniform();
+            const Triangle& c = input_.triangles[t];
+            input_samples_.push_back(
+                {(1.0 - root) * position(c[0]) + root * (1.0 - v) * position(c[1]) + root * v * position(c[2]), t});
+        }
+        hints_of_input_samples_.assign(count, no_index);
+    }
+
+    /// Rows of a triangular lattice, at the centroids of its cells: k * k points.
+    static std::vector<std::array<double, 3>> lattice(std::uint32_t least) {
+        std::uint32_t k = 1;
+        while (k * k < least) ++k;
+        std::vector<std::array<double, 3>> weights;
+        for (std::uint32_t i = 0; i < k; ++i)
+            for (std::uint32_t j = 0; i + j < k; ++j) {
+                const double u = (i + 1.0 / 3.0) / k, v = (j + 1.0 / 3.0) / k;
+                weights.push_back({1.0 - u - v, u, v});
+                if (i + j + 1 < k)
+                    weights.push_back({1.0 - u - v - 1.0 / 3.0 / k, u + 1.0 / 3.0 / k, v + 1.0 / 3.0 / k});
+            }
+        for (auto& w : weights) w[0] = 1.0 - w[1] - w[2];
+        return weights;
+    }
+
+    void pair_coarse_samples() {
+        const std::size_t per_triangle = lattice_.size();
+        double area = 0.0;
+        for (const double a : coarse_areas_) area += a;
+        pairs_.resize(triangles_.size() * per_triangle);
+        hints_.resize(pairs_.size(), no_index);
+        core::parallel_for(triangles_.size(), 32, control_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t t = begin; t < end; ++t) {
+                const auto& c = triangles_[t];
+                Index hint = no_index;
+                for (std::size_t s = 0; s < per_triangle; ++s) {
+                    Pair& pair = pairs_[t * per_triangle + s];
+                    pair.triangle = static_cast<Index>(t);
+                    pair.w = lattice_[s];
+                    const Point3 x = pair.w[0] * mesh_.points[c[0]] + pair.w[1] * mesh_.points[c[1]] +
+                                     pair.w[2] * mesh_.points[c[2]];
+                    const NearestPoint nearest = tree_->find_nearest(x, hint);
+                    hint = nearest.triangle;
+                    fill(pair, x, nearest.point, std::sqrt(nearest.squared_distance), normals_[hint]);
+                    pair.weight *= 0.5 * coarse_areas_[t] / area / double(per_triangle);
+                }
+            }
+        });
+    }
+    void pair_input_samples() {
+        std::vector<Triangle> triangles;
+        for (const auto& t : triangles_) triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+        const TriangleTree coarse(mesh_.points, triangles);
+        const std::size_t first = pairs_.size();
+        pairs_.resize(first + input_samples_.size());
+        core::parallel_for(input_samples_.size(), 256, control_, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t s = begin; s < end; ++s) {
+                const auto& [p, face] = input_samples_[s];
+                Index& hint = hints_of_input_samples_[s];
+                const NearestPoint nearest = coarse.find_nearest(p, hint < triangles.size() ? hint : no_index);
+                hint = nearest.triangle;
+                Pair& pair = pairs_[first + s];
+                pair.triangle = nearest.triangle;
+                pair.w = nearest.weights;
+                fill(pair, nearest.point, p, std::sqrt(nearest.squared_distance), normals_[face]);
+                pair.weight *= 0.5 / double(input_samples_.size());
+            }
+        });
+    }
+    void fill(Pair& pair, const Point3& coarse, const Point3& input, double distance, const Point3& normal) const {
+        pair.normal = normal;
+        pair.along = dot(normal, coarse - input);
+        pair.distance = distance;
+        pair.weight = dot(normal, coarse_normals_[pair.triangle]) >= least_agreement ? 1.0 : 0.0;
+    }
+
+    /// All pairs for the mesh as it is, and the objective.
+    void measure(double power) {
+        triangles_ = triangulate(mesh_, *tree_);
+        if (lattice_.empty()) {
+            lattice_ = lattice(options_.samples_per_triangle);
+            sample_input(triangles_.size() * lattice_.size());
+        }
+        coarse_areas_.clear(), coarse_normals_.clear();
+        for (const auto& t : triangles_) {
+            const Point3 area = cross(mesh_.points[t[1]] - mesh_.points[t[0]], mesh_.points[t[2]] - mesh_.points[t[0]]);
+            coarse_areas_.push_back(0.5 * norm(area));
+            coarse_normals_.push_back(unit(area));
+        }
+        pair_coarse_samples();
+        pair_input_samples();
+        rms_ = power_mean(2.0);
+        largest_ = 0.0;
+        for (const Pair& pair : pairs_) largest_ = std::max(largest_, pair.distance);
+        objective_ = power == 2.0 ? rms_ : power_mean(power);
+    }
+    double power_mean(double power) const {
+        double sum = 0.0, largest = 0.0, weights = 0.0;
+        for (const Pair& pair : pairs_) largest = std::max(largest, pair.weight > 0.0 ? pair.distance : 0.0);
+        if (largest == 0.0) return 0.0;
+        for (const Pair& pair : pairs_) {
+            sum += pair.weight * std::pow(pair.distance / largest, power);
+            weights += pair.weight;
+        }
+        return largest * std::pow(sum / weights, 1.0 / power);
+    }
+
+    // One step ---------------------------------------------------------------------------------------------------
+
+    bool improve(double power) {
+        const std::vector<Point3> start = mesh_.points;
+        const double before = objective_;
+        const std::vector<Point3> step = solve(power);
+        if (step.empty()) return false;
+        double length = 1.0;
+        for (int i = 0; i < half_steps; ++i, length *= 0.5) {
+            for (std::size_t v = 0; v < start.size(); ++v) mesh_.points[v] = start[v] + length * step[v];
+            return_to_curves();
+            undo_folds(start);
+            measure(power);
+            if (objective_ < before) return true;
+        }
+        mesh_.points = start;
+        measure(power);
+        return false;
+    }
+
+    using Block = std::array<double, 6>;  // symmetric: xx xy xz yy yz zz
+    static Point3 times(const Block& m, const Point3& p) {
+        return {m[0] * p.x + m[1] * p.y + m[2] * p.z, m[1] * p.x + m[3] * p.y + m[4] * p.z,
+                m[2] * p.x + m[4] * p.y + m[5] * p.z};
+    }
+    static void add_outer(Block& m, double s, const Point3& n) {
+        m[0] += s * n.x * n.x, m[1] += s * n.x * n.y, m[2] += s * n.x * n.z;
+        m[3] += s * n.y * n.y, m[4] += s * n.y * n.z, m[5] += s * n.z * n.z;
+    }
+    static Block inverse(const Block& m) {
+        const double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
+        const double d = m[0] * a + m[1] * b + m[2] * c;
+        if (!(std::abs(d) > 0.0)) return {};
+        const double s = 1.0 / d;
+        return {s * a,
+                s * b,
+                s * c,
+                s * (m[0] * m[5] - m[2] * m[2]),
+                s * (m[1] * m[2] - m[0] * m[4]),
+                s * (m[0] * m[3] - m[1] * m[1])};
+    }
+
+    /// What a vertex may do: nothing, slide along a line, anything.
+    Point3 constrain(std::size_t v, const Point3& p) const {
+        if (freedom_[v] == 0) return {};
+        return freedom_[v] == 1 ? dot(p, tangents_[v]) * tangents_[v] : p;
+    }
+
+    /// The damped Gauss-Newton step; empty when nothing is to be done.
+    std::vector<Point3> solve(double power) {
+        assemble(power);
+        const std::size_t n = mesh_.points.size();
+        std::vector<Point3> x(n), r(n), z(n), p(n), q(n);
+        double start = 0.0;
+        for (std::size_t v = 0; v < n; ++v) {
+            r[v] = constrain(v, right_[v]);
+            z[v] = constrain(v, times(preconditioner_[v], r[v]));
+            p[v] = z[v];
+            start += dot(r[v], z[v]);
+        }
+        if (!(start > 0.0)) return {};
+        double rz = start;
+        for (int iteration = 0; iteration < 200 && rz > 1e-8 * start; ++iteration) {
+            multiply(p, q);
+            double pq = 0.0;
+            for (std::size_t v = 0; v < n; ++v) pq += dot(p[v], q[v]);
+            if (!(pq > 0.0)) break;
+            const double alpha = rz / pq;
+            double next = 0.0;
+            for (std::size_t v = 0; v < n; ++v) {
+                x[v] = x[v] + alpha * p[v];
+                r[v] = r[v] - alpha * q[v];
+                z[v] = constrain(v, times(preconditioner_[v], r[v]));
+                next += dot(r[v], z[v]);
+            }
+            for (std::size_t v = 0; v < n; ++v) p[v] = z[v] + (next / rz) * p[v];
+            rz = next;
+        }
+        limit(x);
+        return x;
+    }
+
+    void assemble(double power) {
+        const std::size_t n = mesh_.points.size();
+        blocks_.assign(triangles_.size(), {});
+        diagonal_.assign(n, {});
+        right_.assign(n, {});
+        std::vector<Point3> mean_normals(n);
+        std::vector<double> masses(n, 0.0);
+        double largest = 0.0;
+        for (const Pair& pair : pairs_)
+            if (pair.weight > 0.0) largest = std::max(largest, pair.distance);
+        for (const Pair& pair : pairs_) {
+            if (pair.weight == 0.0) continue;
+            double weight = pair.weight;
+            if (power > 2.0) weight *= 0.02 + std::pow(pair.distance / largest, power - 2.0);
+            const auto& c = triangles_[pair.triangle];
+            auto& block = blocks_[pair.triangle];
+            std::size_t slot = 0;
+            for (std::size_t i = 0; i < 3; ++i) {
+                right_[c[i]] = right_[c[i]] - (weight * pair.w[i] * pair.along) * pair.normal;
+                mean_normals[c[i]] = mean_normals[c[i]] + (weight * pair.w[i]) * pair.normal;
+                masses[c[i]] += weight * pair.w[i] * pair.w[i];
+                add_outer(diagonal_[c[i]], weight * pair.w[i] * pair.w[i], pair.normal);
+                for (std::size_t j = i + 1; j < 3; ++j)
+                    add_outer(block[slot++], weight * pair.w[i] * pair.w[j], pair.normal);
+            }
+        }
+        freedom_.assign(n, 3);
+        tangents_.assign(n, {});
+        preconditioner_.assign(n, {});
+        for (std::size_t v = 0; v < n; ++v) {
+            const Point3 normal = unit(mean_normals[v]);
+            const double spring = options_.anchor * masses[v];
+            for (const std::size_t i : {0u, 3u, 5u}) diagonal_[v][i] += spring + 1e-9 * masses[v] + 1e-30;
+            add_outer(diagonal_[v], -spring, normal);
+            preconditioner_[v] = inverse(diagonal_[v]);
+            if (const Curve* curve = curve_of(static_cast<Index>(v))) {
+                freedom_[v] = 1;
+                tangents_[v] = tangent_at(*curve, mesh_.points[v]);
+            } else if (is_fixed(static_cast<Index>(v))) {
+                freedom_[v] = 0;
+            }
+        }
+    }
+    void multiply(const std::vector<Point3>& p, std::vector<Point3>& q) const {
+        for (std::size_t v = 0; v < p.size(); ++v) q[v] = times(diagonal_[v], p[v]);
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            const auto& c = triangles_[t];
+            std::size_t slot = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t j = i + 1; j < 3; ++j) {
+                    const Block& m = blocks_[t][slot++];
+                    q[c[i]] = q[c[i]] + times(m, p[c[j]]);
+                    q[c[j]] = q[c[j]] + times(m, p[c[i]]);
+                }
+        }
+        for (std::size_t v = 0; v < p.size(); ++v) q[v] = constrain(v, q[v]);
+    }
+
+    /// No vertex moves farther than a quarter of its shortest side.
+    void limit(std::vector<Point3>& step) const {
+        std::vector<double> shortest(step.size(), 1.0);
+        for (std::size_t q = 0; q < mesh_.polygon_count(); ++q) {
+            const auto ring = mesh_.polygon(q);
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+                const double length = distance(mesh_.points[a], mesh_.points[b]);
+                shortest[a] = std::min(shortest[a], length), shortest[b] = std::min(shortest[b], length);
+            }
+        }
+        for (std::size_t v = 0; v < step.size(); ++v) {
+            const double length = norm(step[v]);
+            if (length > 0.25 * shortest[v]) step[v] = (0.25 * shortest[v] / length) * step[v];
+        }
+    }
+
+    void return_to_curves() {
+        for (Index v = 0; v < mesh_.points.size(); ++v)
+            if (const Curve* curve = curve_of(v)) mesh_.points[v] = curve->tree->find_nearest(mesh_.points[v]).point;
+    }
+
+    /// Halves the step of the corners of a polygon of which a triangle has turned away from the input; then undoes it.
+    void undo_folds(const std::vector<Point3>& start) {
+        std::vector<Point3> below(triangles_.size());  // mean normal of the input at the triangle's pairs
+        for (const Pair& pair : pairs_) below[pair.triangle] = below[pair.triangle] + pair.weight * pair.normal;
+        const auto agreement = [&](std::size_t t, const std::vector<Point3>& points) {
+            const auto& c = triangles_[t];
+            const Point3 area = cross(points[c[1]] - points[c[0]], points[c[2]] - points[c[0]]);
+            return dot(unit(area), unit(below[t]));
+        };
+        for (int round = 0; round < 8; ++round) {
+            bool is_folded = false;
+            std::vector<std::uint8_t> is_moved_back(start.size(), 0);
+            for (std::size_t t = 0; t < triangles_.size(); ++t) {
+                const double now = agreement(t, mesh_.points);
+                if (now >= 0.5 || now >= agreement(t, start) - 1e-9) continue;
+                is_folded = true;
+                for (const Index v : triangles_[t]) is_moved_back[v] = 1;
+            }
+            if (!is_folded) return;
+            for (std::size_t v = 0; v < start.size(); ++v)
+                if (is_moved_back[v]) mesh_.points[v] = round < 6 ? 0.5 * (mesh_.points[v] + start[v]) : start[v];
+        }
+    }
+
+    void finish() {
+        for (Index v = 0; v < mesh_.points.size(); ++v) {
+            const NearestPoint nearest = tree_->find_nearest(mesh_.points[v]);
+            mesh_.places[v] = {nearest.triangle, nearest.weights};
+            mesh_.points[v] = (1.0 / scale_) * mesh_.points[v] + origin_;
+        }
+    }
+
+    TriangleMesh input_;  // scaled
+    CoarseMesh& mesh_;    // scaled until finish()
+    const PlacementOptions options_;
+    const RunControl& control_;
+    Point3 origin_;
+    double scale_ = 1.0;
+    std::unique_ptr<TriangleTree> tree_;
+    std::vector<double> areas_;
+    std::vector<Point3> normals_;
+    std::vector<Curve> curves_;
+    std::vector<std::vector<Index>> incident_;
+
+    std::vector<std::array<Index, 3>> triangles_;  // of the coarse mesh, in this round
+    std::vector<double> coarse_areas_;
+    std::vector<Point3> coarse_normals_;
+    std::vector<std::array<double, 3>> lattice_;
+    std::vector<std::pair<Point3, Index>> input_samples_;
+    std::vector<Index> hints_, hints_of_input_samples_;
+    std::vector<Pair> pairs_;
+    double rms_ = 0.0, largest_ = 0.0, objective_ = 0.0;
+
+    std::vector<std::array<Block, 3>> blocks_;  // of a triangle's sides 01, 02, 12
+    std::vector<Block> diagonal_, preconditioner_;
+    std::vector<Point3> right_, tangents_;
+    std::vector<std::uint8_t> freedom_;
+};
+
+}  // namespace
+
+PlacementReport place_vertices(const TriangleMesh& input, std::span<const FeatureEdge> features, CoarseMesh& mesh,
+                               const PlacementOptions& options, const RunControl& control) {
+    if (mesh.points.empty() || input.triangles.empty()) return {};
+    return Placement(input, features, mesh, options, control).run();
+}
+
+}  // namespace certa::remeshing
