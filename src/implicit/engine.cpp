@@ -39,19 +39,30 @@ public:
         if (const auto obstacle = classify(tree_, tape_, limits_, control_)) return stop(*obstacle);
         const std::vector<Cluster> clusters = find_clusters(tree_);
         result_.statistics.clusters = clusters.size();
+        std::optional<Triangulation> triangulation;
+        Growth growth;
+        LinkCache links;
+        std::vector<std::uint32_t> split;
         for (;;) {
             ++result_.statistics.rounds;
             if (control_.cancelled()) return stop({ImplicitObstacle::Reason::cancelled, {}});
             control_.report("certify", 1.0 - 1.0 / static_cast<double>(1 + result_.statistics.rounds));
-            const Triangulation triangulation(tree_, field_, signs_);
-            const Growth growth = grow(triangulation);
-            const Findings findings = check_conditions(tree_, triangulation, growth, clusters, tape_, control_);
+            if (triangulation) {
+                Triangulation next(tree_, field_, signs_, *triangulation, split);
+                triangulation = std::move(next);
+                growth = grow(*triangulation, links);
+            } else {
+                triangulation.emplace(tree_, field_, signs_);
+                growth = grow(*triangulation, links);
+            }
+            Findings findings = check_conditions(tree_, *triangulation, growth, clusters, tape_, control_);
             if (findings.offenders.empty()) {
-                conclude(triangulation, growth, findings);
+                conclude(*triangulation, growth, findings);
                 return std::move(result_);
             }
             if (const auto obstacle = split_all(tree_, findings.offenders, tape_, limits_, control_))
                 return stop(*obstacle);
+            split = std::move(findings.offenders);
         }
     }
 

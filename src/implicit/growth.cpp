@@ -81,35 +81,146 @@ bool LinkTest::close_rim(const Triangulation& triangulation, std::uint32_t point
     return true;
 }
 
-Growth grow(const Triangulation& triangulation) {
-    Growth growth;
-    growth.marked.assign(triangulation.point_count(), 0);
-    std::vector<char> queued(triangulation.point_count(), 0);
-    std::deque<std::uint32_t> queue;
-    const auto enqueue = [&](std::uint32_t point) {
-        if (queued[point] || growth.marked[point] || !triangulation.may_join(point)) return;
-        queued[point] = 1;
-        queue.push_back(point);
-    };
-    for (const Triangulation::Tetrahedron& t : triangulation.tetrahedra()) {
-        bool positive = false, negative = false;
-        for (const std::uint32_t p : t) (triangulation.sign(p) > 0 ? positive : negative) = true;
-        if (!positive || !negative) continue;
-        for (const std::uint32_t p : t) enqueue(p);
+void LinkCache::begin_round(const Triangulation& triangulation) {
+    entries_.resize(triangulation.point_count());
+    for (std::uint32_t point = 0; point < entries_.size(); ++point) {
+        if (triangulation.is_changed(point)) entries_[point].built = false;
     }
-    LinkTest test(triangulation.point_count());
-    while (!queue.empty()) {
-        const std::uint32_t point = queue.front();
-        queue.pop_front();
-        queued[point] = 0;
-        if (!test.may_join(triangulation, growth.marked, point)) continue;
-        growth.marked[point] = 1;
-        growth.order.push_back(point);
-        for (const std::uint32_t p : test.link()) {
-            if (triangulation.sign(p) == triangulation.sign(point)) enqueue(p);
+}
+
+LinkCache::Link LinkCache::link_of(const Triangulation& triangulation, std::uint32_t point) {
+    Entry& entry = entries_[point];
+    if (!entry.built) {
+        entry.built = true;
+        entry.first = points_.size();
+        build(triangulation, point);
+        entry.count = static_cast<std::uint32_t>(points_.size() - entry.first);
+    }
+    return {points_.data() + entry.first, masks_.data() + entry.first, entry.count};
+}
+
+/// Links of more than 64 points are not kept.
+void LinkCache::build(const Triangulation& triangulation, std::uint32_t point) {
+    const std::size_t first = points_.size();
+    const auto place_of = [&](std::uint32_t p) {
+        std::size_t place = first;
+        while (place < points_.size() && points_[place] != p) ++place;
+        if (place == points_.size()) points_.push_back(p);
+        return place - first;
+    };
+    std::array<std::uint64_t, 64> masks{};
+    for (const std::uint32_t t : triangulation.around(point)) {
+        std::array<std::size_t, 3> face{};
+        std::size_t count = 0;
+        for (const std::uint32_t p : triangulation.tetrahedra()[t]) {
+            if (p != point) face[count++] = place_of(p);
+        }
+        if (points_.size() - first > 64) {
+            points_.resize(first);
+            return;
+        }
+        for (std::size_t i = 0; i < 3; ++i)
+            masks[face[i]] |= (std::uint64_t{1} << face[(i + 1) % 3]) | (std::uint64_t{1} << face[(i + 2) % 3]);
+    }
+    masks_.insert(masks_.end(), masks.begin(), masks.begin() + static_cast<std::ptrdiff_t>(points_.size() - first));
+}
+
+namespace {
+
+/// Whether the points of a link in `set` are connected by its edges; not if there are none.
+bool is_connected(std::uint64_t set, const std::uint64_t* masks) {
+    std::uint64_t reached = set & (~set + 1), work = reached;
+    while (work != 0) {
+        const std::uint64_t next = masks[std::countr_zero(work)] & set & ~reached;
+        work &= work - 1;
+        work |= next;
+        reached |= next;
+    }
+    return set != 0 && reached == set;
+}
+
+class Grower {
+public:
+    Grower(const Triangulation& triangulation, LinkCache& links)
+        : t_(triangulation), links_(links), test_(triangulation.point_count()), state_(triangulation.point_count()) {
+        growth_.marked.assign(triangulation.point_count(), 0);
+        for (std::uint32_t p = 0; p < state_.size(); ++p) state_[p] = t_.sign(p) > 0 ? positive : 0;
+    }
+
+    Growth run() {
+        for (const Triangulation::Tetrahedron& t : t_.tetrahedra()) {
+            unsigned all = positive, any = 0;
+            for (const std::uint32_t p : t) {
+                all &= state_[p];
+                any |= state_[p];
+            }
+            if (((all ^ any) & positive) == 0) continue;
+            for (const std::uint32_t p : t) enqueue(p);
+        }
+        while (!queue_.empty()) {
+            const std::uint32_t point = queue_.front();
+            queue_.pop_front();
+            state_[point] &= static_cast<std::uint8_t>(~queued);
+            try_to_join(point);
+        }
+        return std::move(growth_);
+    }
+
+private:
+    static constexpr std::uint8_t positive = 1, marked = 2, queued = 4;
+
+    void enqueue(std::uint32_t point) {
+        if ((state_[point] & (queued | marked)) != 0 || !t_.may_join(point)) return;
+        state_[point] |= queued;
+        queue_.push_back(point);
+    }
+
+    void try_to_join(std::uint32_t point) {
+        const LinkCache::Link link =
+            t_.box_faces(point) == 0 ? links_.link_of(t_, point) : LinkCache::Link{nullptr, nullptr, 0};
+        if (link.count == 0) {
+            if (!test_.may_join(t_, growth_.marked, point)) return;
+            mark(point, test_.link().data(), test_.link().size());
+            return;
+        }
+        const unsigned own = state_[point] & positive;
+        std::uint64_t inside = 0;
+        for (unsigned i = 0; i < link.count; ++i) {
+            const unsigned state = state_[link.points[i]];
+            inside |= std::uint64_t{(state & positive) != own || (state & marked) != 0} << i;
+        }
+        const std::uint64_t all = ~std::uint64_t{0} >> (64 - link.count);
+        if (is_connected(inside, link.masks) && is_connected(all & ~inside, link.masks))
+            mark(point, link.points, link.count);
+    }
+
+    void mark(std::uint32_t point, const std::uint32_t* link, std::size_t count) {
+        growth_.marked[point] = 1;
+        growth_.order.push_back(point);
+        state_[point] |= marked;
+        for (std::size_t i = 0; i < count; ++i) {
+            if (((state_[link[i]] ^ state_[point]) & positive) == 0) enqueue(link[i]);
         }
     }
-    return growth;
+
+    const Triangulation& t_;
+    LinkCache& links_;
+    LinkTest test_;
+    std::vector<std::uint8_t> state_;
+    std::deque<std::uint32_t> queue_;
+    Growth growth_;
+};
+
+}  // namespace
+
+Growth grow(const Triangulation& triangulation, LinkCache& links) {
+    links.begin_round(triangulation);
+    return Grower(triangulation, links).run();
+}
+
+Growth grow(const Triangulation& triangulation) {
+    LinkCache links;
+    return grow(triangulation, links);
 }
 
 }  // namespace certa::implicit

@@ -13,6 +13,31 @@ struct Growth {
     std::vector<std::uint32_t> order;  ///< marked points in the order of marking: the certificate of the collapse
 };
 
+/// The links of points as bit masks, kept between rounds of refinement where stars do not change.
+class LinkCache {
+public:
+    struct Link {
+        const std::uint32_t* points;
+        const std::uint64_t* masks;  ///< per point of the link, a bit for each neighbour in the link
+        std::size_t count;           ///< 0: more than 64 points, not kept
+    };
+    /// The link of a point that may join; valid until the next call.
+    Link link_of(const Triangulation& triangulation, std::uint32_t point);
+    /// Forgets the links that the triangulation says may have changed; to be called for each triangulation.
+    void begin_round(const Triangulation& triangulation);
+
+private:
+    struct Entry {
+        std::size_t first = 0;
+        std::uint32_t count = 0;
+        bool built = false;
+    };
+    void build(const Triangulation& triangulation, std::uint32_t point);
+    std::vector<Entry> entries_;
+    std::vector<std::uint32_t> points_;
+    std::vector<std::uint64_t> masks_;
+};
+
 /// Marks points as long as some may join.
 ///
 /// Definition: a point v may join when, in its link, the part spanned by points of the other sign and marked points is
@@ -23,6 +48,8 @@ struct Growth {
 ///             once in each of the two faces. Each step adds a cone over a contractible set, so W collapses to the
 ///             surface of sign changes (Lemma 51), once every tetrahedron with both signs has all its points marked.
 Growth grow(const Triangulation& triangulation);
+/// The same; `links` is kept for the triangulation that follows from this one.
+Growth grow(const Triangulation& triangulation, LinkCache& links);
 
 /// Whether one point may join now; the test of the definition above.
 class LinkTest {

@@ -12,15 +12,75 @@ namespace certa::implicit {
 
 Triangulation::Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs) {
     choose_active(tree);
+    is_new_.assign(active_.size(), 1);
+    build_rest(tree, field, signs, nullptr);
+}
+
+Triangulation::Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs, const Triangulation& previous,
+                             std::span<const std::uint32_t> split) {
+    inherit_active(tree, previous, split);
+    sign_ = previous.sign_;
+    build_rest(tree, field, signs, &previous);
+}
+
+void Triangulation::build_rest(Octree& tree, Field& field, std::vector<PointSign>& signs,
+                               const Triangulation* previous) {
     offsets_.push_back(0);
+    if (previous) tetrahedra_.reserve(previous->tetrahedra_.size() + previous->tetrahedra_.size() / 4);
+    std::size_t before = 0;  // both lists of active leaves are sorted
     for (std::uint32_t i = 0; i < active_.size(); ++i) {
-        build_leaf(tree, active_[i]);
+        if (is_new_[i]) {
+            build_leaf(tree, active_[i]);
+        } else {
+            while (previous->active_[before] != active_[i]) ++before;
+            const auto kept = previous->tetrahedra_of(before);
+            tetrahedra_.insert(tetrahedra_.end(), kept.begin(), kept.end());
+        }
         offsets_.push_back(static_cast<std::uint32_t>(tetrahedra_.size()));
         leaf_of_.resize(tetrahedra_.size(), i);
     }
     settle_signs(tree, field, signs);
     choose_candidates(tree);
+    note_changes();
     index_stars();
+}
+
+/// New leaves, and old ones that hold a new corner: there an edge or a square is subdivided now.
+void Triangulation::inherit_active(const Octree& tree, const Triangulation& previous,
+                                   std::span<const std::uint32_t> split) {
+    is_active_ = previous.is_active_;
+    is_active_.resize(tree.cells().size(), 0);
+    std::vector<char> dirty(tree.cells().size(), 0);
+    const Coordinate side = tree.grid().side();
+    for (const std::uint32_t parent : split) {
+        const Cell& cell = tree.cell(parent);
+        for (std::uint32_t c = 0; c < 8; ++c) {
+            is_active_[cell.children + c] = previous.is_active_[parent];
+            dirty[cell.children + c] = 1;
+        }
+        is_active_[parent] = 0;
+        const Coordinate half = tree.size_of(cell) / 2;
+        for (std::uint32_t corner = 0; corner < 27; ++corner) {
+            const std::uint32_t steps[3] = {corner % 3, corner / 3 % 3, corner / 9};
+            if (steps[0] != 1 && steps[1] != 1 && steps[2] != 1) continue;  // a corner of the parent
+            for (unsigned octant = 0; octant < 8; ++octant) {
+                GridPoint p;
+                bool inside = true;
+                for (std::size_t a = 0; a < 3; ++a) {
+                    p[a] = cell.low[a] + steps[a] * half;
+                    const bool below = ((octant >> a) & 1u) == 0;
+                    if (below ? p[a] == 0 : p[a] == side) inside = false;
+                    if (below) --p[a];
+                }
+                if (inside) dirty[tree.leaf_at(p)] = 1;
+            }
+        }
+    }
+    for (std::uint32_t leaf = 0; leaf < is_active_.size(); ++leaf) {
+        if (!is_active_[leaf]) continue;
+        active_.push_back(leaf);
+        is_new_.push_back(dirty[leaf]);
+    }
 }
 
 /// Two leaves share a point exactly when the smaller one's closure has a corner on the larger one's: so the leaves
@@ -122,25 +182,45 @@ void Triangulation::append_edge(const Octree& tree, std::uint32_t a, std::uint32
 
 void Triangulation::settle_signs(const Octree& tree, Field& field, std::vector<PointSign>& signs) {
     signs.resize(tree.points().size());
-    sign_.assign(tree.points().size(), 0);
+    sign_.resize(tree.points().size(), 0);
     for (std::size_t i = 0; i < active_.size(); ++i) {
+        if (!is_new_[i]) continue;
         const int proved = tree.cell(active_[i]).known.sign;
         for (const Tetrahedron& t : tetrahedra_of(i)) {
+            for (const std::uint32_t point : t) settle_sign(tree, field, proved, point, signs[point]);
+        }
+    }
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+        if (!is_new_[i]) continue;
+        for (const Tetrahedron& t : tetrahedra_of(i)) {
             for (const std::uint32_t point : t) {
-                if (proved != 0) {
-                    CERTA_ASSERT(!signs[point].proved || signs[point].sign == proved);
-                    signs[point] = {static_cast<std::int8_t>(proved), true};
-                } else if (signs[point].sign == 0) {
-                    const GridPoint& p = tree.points()[point];
-                    const int certain = field.sign_on(tree.grid().region(p, p));
-                    const double value = certain == 0 ? field.value(tree.grid().place(p)) : certain;
-                    signs[point] = {static_cast<std::int8_t>(value < 0 ? -1 : 1), certain != 0};
-                }
+                turned_ = turned_ || (sign_[point] != 0 && sign_[point] != signs[point].sign);
+                sign_[point] = signs[point].sign;
             }
         }
     }
-    for (const Tetrahedron& t : tetrahedra_) {
-        for (const std::uint32_t point : t) sign_[point] = signs[point].sign;
+}
+
+void Triangulation::settle_sign(const Octree& tree, Field& field, int proved, std::uint32_t point, PointSign& known) {
+    if (proved != 0) {
+        CERTA_ASSERT(!known.proved || known.sign == proved);
+        known = {static_cast<std::int8_t>(proved), true};
+    } else if (known.sign == 0) {
+        const GridPoint& p = tree.points()[point];
+        const int certain = field.sign_on(tree.grid().region(p, p));
+        const double value = certain == 0 ? field.value(tree.grid().place(p)) : certain;
+        known = {static_cast<std::int8_t>(value < 0 ? -1 : 1), certain != 0};
+    }
+}
+
+/// Where a sign turned, neighbours that lie in old leaves change too: that is rare, so everything is taken as changed.
+void Triangulation::note_changes() {
+    changed_.assign(point_count(), turned_ ? 1 : 0);
+    for (std::size_t i = 0; i < active_.size(); ++i) {
+        if (!is_new_[i]) continue;
+        for (const Tetrahedron& t : tetrahedra_of(i)) {
+            for (const std::uint32_t point : t) changed_[point] = 1;
+        }
     }
 }
 

@@ -25,6 +25,10 @@ public:
         bool proved = false;
     };
     Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs);
+    /// The same after some leaves were split (once each, their children not), from what was built before: only leaves
+    /// that got a new corner are built anew. Leaves that were active stay so, children of active leaves are.
+    Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs, const Triangulation& previous,
+                  std::span<const std::uint32_t> split);
 
     using Tetrahedron = std::array<std::uint32_t, 4>;  ///< positively oriented; the leaf's centre first
 
@@ -43,6 +47,8 @@ public:
     bool may_join(std::uint32_t point) const { return may_join_[point] != 0; }
     /// The faces of the box that hold a point (Octree::box_faces); 0 unless the box clips.
     unsigned box_faces(std::uint32_t point) const { return box_faces_.empty() ? 0 : box_faces_[point]; }
+    /// Whether the star of a point, or a sign in it, may differ from the triangulation that this one was made from.
+    bool is_changed(std::uint32_t point) const { return changed_[point] != 0; }
     /// Tetrahedra around a point that may join.
     std::span<const std::uint32_t> around(std::uint32_t point) const {
         return std::span(around_).subspan(around_offsets_[point], around_offsets_[point + 1] - around_offsets_[point]);
@@ -50,15 +56,22 @@ public:
 
 private:
     void choose_active(Octree& tree);
+    void inherit_active(const Octree& tree, const Triangulation& previous, std::span<const std::uint32_t> split);
+    void build_rest(Octree& tree, Field& field, std::vector<PointSign>& signs, const Triangulation* previous);
     void build_leaf(Octree& tree, std::uint32_t leaf);
     void build_square(Octree& tree, const GridPoint& low, int axis, int side, Coordinate size, std::uint32_t apex);
     void append_edge(const Octree& tree, std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& ring) const;
     void settle_signs(const Octree& tree, Field& field, std::vector<PointSign>& signs);
+    void settle_sign(const Octree& tree, Field& field, int proved, std::uint32_t point, PointSign& known);
+    void note_changes();
     void choose_candidates(const Octree& tree);
     void index_stars();
 
     std::vector<std::uint32_t> active_, leaf_of_, offsets_, around_, around_offsets_;
     std::vector<char> is_active_, may_join_;
+    std::vector<char> is_new_;  ///< per active leaf: built anew
+    std::vector<char> changed_;
+    bool turned_ = false;  ///< a sign of a known point turned out to be the other
     std::vector<std::int8_t> sign_;
     std::vector<std::uint8_t> box_faces_;
     std::vector<Tetrahedron> tetrahedra_;
