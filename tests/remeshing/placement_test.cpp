@@ -9,8 +9,8 @@
 
 #include "core/random.h"
 #include "core/vector3.h"
+#include "remeshing/coarse_meshes.h"
 #include "remeshing/triangulate.h"
-#include "verify/surfaces.h"
 
 namespace certa::remeshing {
 namespace {
@@ -18,23 +18,6 @@ namespace {
 using test::make_grid;
 using test::make_torus;
 
-CoarseMesh coarse_mesh(const PolygonMesh& mesh) {
-    CoarseMesh coarse;
-    for (const Point3& p : mesh.positions) coarse.add_vertex(p, {});
-    for (std::size_t q = 0; q + 1 < mesh.offsets.size(); ++q) {
-        std::vector<Index> ring;
-        for (std::uint32_t i = mesh.offsets[q]; i < mesh.offsets[q + 1]; ++i) ring.push_back(index_of(mesh.corners[i]));
-        coarse.add_polygon(ring);
-    }
-    return coarse;
-}
-PolygonMesh polygon_mesh(const CoarseMesh& coarse) {
-    PolygonMesh mesh;
-    mesh.positions = coarse.points;
-    mesh.offsets = coarse.offsets;
-    for (const Index v : coarse.corners) mesh.corners.push_back(VertexId{v});
-    return mesh;
-}
 TriangleMesh triangle_mesh(const PolygonMesh& mesh) {
     TriangleMesh triangles;
     triangles.positions = mesh.positions;

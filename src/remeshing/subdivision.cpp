@@ -1,0 +1,143 @@
+// Linear subdivision, then averaging.
+//
+// Averaging gives each polygon's share to each of its corners: of a quad the centroid with weight 1/4 (an angle of 90
+// degrees), of a triangle the point (v + 3/2 (a + b)) / 4 with weight 1/6 (60 degrees); the vertex moves towards the
+// weighted mean by a factor that depends on how many of each there are (1 where regular). On curves the same is done
+// with segments: (a + 2 v + b) / 4.
+#include "remeshing/subdivision.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/vector3.h"
+
+namespace certa::remeshing {
+namespace {
+
+using Key = std::pair<Index, Index>;
+Key key_of(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
+
+struct Side {
+    Index curve = no_index;  // of the feature
+    bool is_sharp = false;   // a feature or boundary
+    Index middle = no_index;
+    int polygons = 0;
+};
+using Sides = std::map<Key, Side>;
+
+Sides find_sides(const CoarseMesh& mesh) {
+    Sides sides;
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+        const auto ring = mesh.polygon(q);
+        for (std::size_t i = 0; i < ring.size(); ++i) ++sides[key_of(ring[i], ring[(i + 1) % ring.size()])].polygons;
+    }
+    for (auto& [key, side] : sides) side.is_sharp = side.polygons != 2;
+    for (const FeatureEdge& edge : mesh.feature_edges) {
+        const auto found = sides.find(key_of(edge.a, edge.b));
+        if (found == sides.end()) continue;
+        found->second.is_sharp = true;
+        found->second.curve = edge.curve;
+    }
+    return sides;
+}
+
+/// Splits sides and polygons; new vertices are means.
+CoarseMesh split(const CoarseMesh& mesh, Sides& sides) {
+    CoarseMesh fine;
+    fine.points = mesh.points, fine.kinds = mesh.kinds, fine.curves = mesh.curves;
+    fine.places.assign(mesh.points.size(), {});
+    for (auto& [key, side] : sides) {
+        const VertexKind kind = side.polygons == 1 ? VertexKind::boundary
+                                : side.is_sharp    ? VertexKind::crease
+                                                   : VertexKind::smooth;
+        side.middle = fine.add_vertex(0.5 * (mesh.points[key.first] + mesh.points[key.second]), {}, kind, side.curve);
+        if (side.curve != no_index) {
+            fine.feature_edges.push_back({key.first, side.middle, side.curve});
+            fine.feature_edges.push_back({side.middle, key.second, side.curve});
+        }
+    }
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+        const auto ring = mesh.polygon(q);
+        const std::size_t n = ring.size();
+        std::vector<Index> middles;
+        Point3 mean;
+        for (std::size_t i = 0; i < n; ++i) {
+            middles.push_back(sides.at(key_of(ring[i], ring[(i + 1) % n])).middle);
+            mean = mean + (1.0 / static_cast<double>(n)) * mesh.points[ring[i]];
+        }
+        if (n == 3) {
+            fine.add_polygon(middles);
+            for (std::size_t i = 0; i < 3; ++i) fine.add_polygon(std::array{ring[i], middles[i], middles[(i + 2) % 3]});
+            continue;
+        }
+        const Index centre = fine.add_vertex(mean, {});
+        for (std::size_t i = 0; i < n; ++i)
+            fine.add_polygon(std::array{ring[i], middles[i], centre, middles[(i + n - 1) % n]});
+    }
+    return fine;
+}
+
+/// How far towards the mean: 1 where regular; Loop's and Catmull's extraordinary rules elsewhere.
+double factor(int quads, int triangles) {
+    if (quads == 0) {
+        const double c = 0.375 + 0.25 * std::cos(2.0 * std::numbers::pi / triangles);
+        return 5.0 / 3.0 - 8.0 / 3.0 * c * c;
+    }
+    if (triangles == 0) return 4.0 / quads;
+    return 12.0 / (3.0 * quads + 2.0 * triangles);
+}
+
+void average(CoarseMesh& mesh) {
+    const std::size_t n = mesh.points.size();
+    const Sides sides = find_sides(mesh);
+    std::vector<std::vector<Index>> along(n);  // neighbours on sharp sides
+    for (const auto& [key, side] : sides) {
+        if (!side.is_sharp) continue;
+        along[key.first].push_back(key.second);
+        along[key.second].push_back(key.first);
+    }
+    std::vector<Point3> sums(n);
+    std::vector<double> weights(n, 0.0);
+    std::vector<std::array<int, 2>> counts(n, {0, 0});  // quads, triangles
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+        const auto ring = mesh.polygon(q);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Index v = ring[i], a = ring[(i + 1) % ring.size()], b = ring[(i + ring.size() - 1) % ring.size()];
+            if (ring.size() == 3) {
+                sums[v] = sums[v] + (1.0 / 6.0) * (0.25 * mesh.points[v] + 0.375 * (mesh.points[a] + mesh.points[b]));
+                weights[v] += 1.0 / 6.0;
+                ++counts[v][1];
+            } else {
+                const Point3& c = mesh.points[ring[(i + 2) % ring.size()]];
+                sums[v] = sums[v] + 0.0625 * (mesh.points[v] + mesh.points[a] + mesh.points[b] + c);
+                weights[v] += 0.25;
+                ++counts[v][0];
+            }
+        }
+    }
+    std::vector<Point3> moved = mesh.points;
+    for (std::size_t v = 0; v < n; ++v) {
+        const bool is_corner = mesh.kinds[v] == VertexKind::corner || (!along[v].empty() && along[v].size() != 2);
+        if (is_corner || weights[v] == 0.0) continue;
+        if (along[v].size() == 2) {
+            moved[v] = 0.5 * mesh.points[v] + 0.25 * (mesh.points[along[v][0]] + mesh.points[along[v][1]]);
+            continue;
+        }
+        const Point3 mean = (1.0 / weights[v]) * sums[v];
+        moved[v] = mesh.points[v] + factor(counts[v][0], counts[v][1]) * (mean - mesh.points[v]);
+    }
+    mesh.points = std::move(moved);
+}
+
+}  // namespace
+
+CoarseMesh subdivide(const CoarseMesh& mesh) {
+    Sides sides = find_sides(mesh);
+    CoarseMesh fine = split(mesh, sides);
+    average(fine);
+    return fine;
+}
+
+}  // namespace certa::remeshing

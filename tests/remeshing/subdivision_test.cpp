@@ -1,0 +1,128 @@
+// Masks of the regular cases, topology, creases and corners.
+#include "remeshing/subdivision.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "core/random.h"
+#include "core/vector3.h"
+#include "remeshing/coarse_meshes.h"
+
+namespace certa::remeshing {
+namespace {
+
+int euler_characteristic(const CoarseMesh& mesh, int& boundary_sides) {
+    std::map<std::pair<Index, Index>, int> sides;
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+        const auto ring = mesh.polygon(q);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+            ++sides[{std::min(a, b), std::max(a, b)}];
+        }
+    }
+    boundary_sides = 0;
+    for (const auto& [side, times] : sides) {
+        EXPECT_LE(times, 2);
+        boundary_sides += times == 1;
+    }
+    return static_cast<int>(mesh.points.size()) - static_cast<int>(sides.size()) +
+           static_cast<int>(mesh.polygon_count());
+}
+
+CoarseMesh make_flat_grid(std::uint32_t n) {
+    return coarse_mesh(test::make_grid(n, n, [](double u, double v) { return Point3{u, v, 0.0}; }));
+}
+
+TEST(Subdivision, RegularQuadsAreTheBicubicSpline) {
+    CoarseMesh mesh = make_flat_grid(4);
+    const Index v = 2 * 5 + 2;
+    mesh.points[v].z = 1.0;
+    const CoarseMesh fine = subdivide(mesh);
+    EXPECT_NEAR(fine.points[v].z, 36.0 / 64.0, 1e-15);
+    EXPECT_NEAR(fine.points[v + 1].z, 6.0 / 64.0, 1e-15);
+    EXPECT_NEAR(fine.points[v + 6].z, 1.0 / 64.0, 1e-15);
+}
+
+TEST(Subdivision, RegularTrianglesAreLoops) {
+    const CoarseMesh quads = make_flat_grid(4);
+    CoarseMesh mesh = quads;
+    mesh.corners.clear(), mesh.offsets = {0};
+    for (std::size_t q = 0; q < quads.polygon_count(); ++q) {
+        const auto r = quads.polygon(q);
+        mesh.add_polygon(std::array{r[0], r[1], r[2]});
+        mesh.add_polygon(std::array{r[0], r[2], r[3]});
+    }
+    const Index v = 2 * 5 + 2;
+    mesh.points[v].z = 1.0;
+    const CoarseMesh fine = subdivide(mesh);
+    EXPECT_NEAR(fine.points[v].z, 10.0 / 16.0, 1e-15);
+    EXPECT_NEAR(fine.points[v + 1].z, 1.0 / 16.0, 1e-15);
+    EXPECT_NEAR(fine.points[v + 6].z, 1.0 / 16.0, 1e-15);
+    EXPECT_NEAR(fine.points[v + 4].z, 0.0, 1e-15);
+}
+
+TEST(Subdivision, KeepsPlanesAndTopology) {
+    core::Random random(5);
+    CoarseMesh mesh = make_flat_grid(5);
+    for (Point3& p : mesh.points) p = {p.x, p.y, 2.0 * p.x - p.y};
+    const CoarseMesh twice = subdivide(subdivide(mesh));
+    for (const Point3& p : twice.points) EXPECT_NEAR(p.z, 2.0 * p.x - p.y, 1e-14);
+    int boundary = 0;
+    EXPECT_EQ(euler_characteristic(twice, boundary), 1);
+    EXPECT_EQ(boundary, 4 * 5 * 4);
+    const CoarseMesh torus = subdivide(coarse_mesh(test::make_torus(8, 6, 1.0, 0.4)));
+    EXPECT_EQ(euler_characteristic(torus, boundary), 0);
+    EXPECT_EQ(boundary, 0);
+    EXPECT_EQ(torus.polygon_count(), 4u * 48u);
+    const CoarseMesh sphere = subdivide(coarse_mesh(test::make_sphere(5, 7, 1.0)));
+    EXPECT_EQ(euler_characteristic(sphere, boundary), 2);
+    for (const Point3& p : sphere.points) EXPECT_LT(norm(p), 1.0);
+}
+
+TEST(Subdivision, LargePolygonsBecomeQuads) {
+    CoarseMesh mesh;
+    for (const Point3& p : {Point3{0, 0, 0}, {2, 0, 0}, {3, 1, 0}, {1, 3, 0}, {-1, 1, 0}}) mesh.add_vertex(p, {});
+    mesh.add_polygon(std::vector<Index>{0, 1, 2, 3, 4});
+    const CoarseMesh fine = subdivide(mesh);
+    EXPECT_EQ(fine.polygon_count(), 5u);
+    for (std::size_t q = 0; q < 5; ++q) EXPECT_EQ(fine.polygon(q).size(), 4u);
+}
+
+TEST(Subdivision, CreasesAreSplinesAndCornersStay) {
+    // A cube whose twelve edges are creases: sides stay flat, edges straight, corners where they are.
+    CoarseMesh mesh = coarse_mesh(test::make_cube(2));
+    Index curve = 0;
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+        const auto ring = mesh.polygon(q);
+        for (std::size_t i = 0; i < 4; ++i) {
+            const Point3 m = 0.5 * (mesh.points[ring[i]] + mesh.points[ring[(i + 1) % 4]]);
+            const auto at_end = [](double x) { return x == 0.0 || x == 1.0; };
+            if (ring[i] < ring[(i + 1) % 4] && at_end(m.x) + at_end(m.y) + at_end(m.z) == 2)
+                mesh.feature_edges.push_back({ring[i], ring[(i + 1) % 4], curve++});
+        }
+    }
+    EXPECT_EQ(mesh.feature_edges.size(), 24u);
+    const CoarseMesh fine = subdivide(subdivide(mesh));
+    EXPECT_EQ(fine.feature_edges.size(), 4u * 24u);
+    for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+        const Point3& p = mesh.points[v];
+        const bool is_corner = p.x != 0.5 && p.y != 0.5 && p.z != 0.5;
+        if (is_corner) {
+            EXPECT_EQ(fine.points[v], p);
+        }
+    }
+    for (const Point3& p : fine.points) {
+        const double off = std::min({p.x, p.y, p.z, 1.0 - p.x, 1.0 - p.y, 1.0 - p.z});
+        EXPECT_NEAR(off, 0.0, 1e-15);
+    }
+    for (const FeatureEdge& edge : fine.feature_edges)
+        for (const Index v : {edge.a, edge.b}) {
+            const Point3& p = fine.points[v];
+            const auto at_end = [](double x) { return x < 1e-15 || x > 1.0 - 1e-15; };
+            EXPECT_GE(at_end(p.x) + at_end(p.y) + at_end(p.z), 2);
+        }
+}
+
+}  // namespace
+}  // namespace certa::remeshing

@@ -1,0 +1,150 @@
+// All patterns of T-nodes on triangles, rectangles and pentagons: pieces tile, and none has a straight corner.
+#include "remeshing/templates.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/random.h"
+#include "core/vector3.h"
+#include "remeshing/coarse_meshes.h"
+
+namespace certa::remeshing {
+namespace {
+
+/// A convex polygon with `nodes[i]` nodes in side i, evenly.
+std::vector<Point3> with_nodes(const std::vector<Point3>& corners, const std::vector<int>& nodes) {
+    std::vector<Point3> ring;
+    for (std::size_t i = 0; i < corners.size(); ++i)
+        for (int k = 0; k <= nodes[i]; ++k) {
+            const double s = k / (nodes[i] + 1.0);
+            ring.push_back((1.0 - s) * corners[i] + s * corners[(i + 1) % corners.size()]);
+        }
+    return ring;
+}
+std::vector<Point3> rectangle(double width) { return {{0, 0, 0}, {width, 0, 0}, {width, 1, 0}, {0, 1, 0}}; }
+std::vector<Point3> regular(int n) {
+    std::vector<Point3> corners;
+    for (int i = 0; i < n; ++i)
+        corners.push_back({std::cos(2.0 * std::numbers::pi * i / n), std::sin(2.0 * std::numbers::pi * i / n), 0.0});
+    return corners;
+}
+double area(const std::vector<Point3>& ring, const std::vector<Index>& piece) {
+    double sum = 0.0;
+    for (std::size_t i = 1; i + 1 < piece.size(); ++i)
+        sum += 0.5 * cross(ring[piece[i]] - ring[piece[0]], ring[piece[i + 1]] - ring[piece[0]]).z;
+    return sum;
+}
+
+struct Count {
+    int quads = 0, triangles = 0;
+    friend bool operator==(const Count&, const Count&) = default;
+};
+
+/// Pieces are convex without straight corners, conform, and have the polygon's area.
+Count expect_tiling(const std::vector<Point3>& ring) {
+    const auto pieces = cut_into_quads(ring);
+    std::vector<Index> whole;
+    for (Index i = 0; i < ring.size(); ++i) whole.push_back(i);
+    Count count;
+    double sum = 0.0;
+    std::map<std::pair<Index, Index>, int> sides;  // directed
+    for (const auto& piece : pieces) {
+        ++(piece.size() == 4 ? count.quads : count.triangles);
+        EXPECT_TRUE(piece.size() == 3 || piece.size() == 4);
+        sum += area(ring, piece);
+        for (std::size_t i = 0; i < piece.size(); ++i) {
+            const Index a = piece[i], b = piece[(i + 1) % piece.size()], c = piece[(i + 2) % piece.size()];
+            ++sides[{a, b}];
+            const Point3 in = ring[b] - ring[a], out = ring[c] - ring[b];
+            EXPECT_GT(cross(in, out).z / (norm(in) * norm(out)), 1e-3) << "a straight or reflex corner";
+        }
+    }
+    EXPECT_NEAR(sum, area(ring, whole), 1e-12);
+    EXPECT_EQ(count.triangles + 2 * count.quads + 2, static_cast<int>(ring.size()));
+    for (const auto& [side, times] : sides) {
+        EXPECT_EQ(times, 1);
+        const bool is_outer = side.second == (side.first + 1) % ring.size();
+        EXPECT_EQ(sides.count({side.second, side.first}), is_outer ? 0u : 1u);
+    }
+    return count;
+}
+
+TEST(Templates, AllPatternsOnRectangles) {
+    for (const double width : {1.0, 4.0})
+        for (int pattern = 0; pattern < 256; ++pattern) {
+            const std::vector<int> nodes{pattern & 3, pattern >> 2 & 3, pattern >> 4 & 3, pattern >> 6 & 3};
+            SCOPED_TRACE(pattern);
+            const Count count = expect_tiling(with_nodes(rectangle(width), nodes));
+            // Turned by 90 degrees (of the square) it is the same pattern.
+            if (width > 1.0) continue;
+            const Count turned = expect_tiling(with_nodes(rectangle(width), {nodes[1], nodes[2], nodes[3], nodes[0]}));
+            EXPECT_EQ(count, turned);
+        }
+}
+
+TEST(Templates, AllPatternsOnTrianglesAndPentagons) {
+    for (int pattern = 0; pattern < 64; ++pattern)
+        expect_tiling(with_nodes(regular(3), {pattern & 3, pattern >> 2 & 3, pattern >> 4 & 3}));
+    for (int pattern = 0; pattern < 32; ++pattern)
+        expect_tiling(with_nodes(
+            regular(5), {pattern & 1, pattern >> 1 & 1, pattern >> 2 & 1, pattern >> 3 & 1, pattern >> 4 & 1}));
+}
+
+TEST(Templates, KnownOnes) {
+    const auto count = [](std::vector<int> nodes) { return expect_tiling(with_nodes(rectangle(1.5), nodes)); };
+    EXPECT_EQ(count({0, 0, 0, 0}), (Count{1, 0}));
+    EXPECT_EQ(count({1, 0, 0, 0}), (Count{1, 1}));
+    EXPECT_EQ(count({1, 0, 1, 0}), (Count{2, 0}));  // joined straight across
+    EXPECT_EQ(count({2, 0, 2, 0}), (Count{3, 0}));
+    EXPECT_EQ(count({2, 0, 0, 0}), (Count{1, 2}));
+    EXPECT_EQ(count({2, 0, 1, 0}), (Count{2, 1}));
+}
+
+TEST(Templates, LargePolygonsArePaired) {
+    const Count count = expect_tiling(regular(40));
+    EXPECT_GE(count.quads, 14);
+}
+
+TEST(Templates, CutAWholeMeshAndKeepItConforming) {
+    // Left a square with a node in the side that it shares with two squares on the right.
+    CoarseMesh mesh;
+    for (const Point3& p :
+         {Point3{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {2, 2, 0}, {0, 2, 0}, {3, 0, 0}, {3, 1, 0}, {3, 2, 0}})
+        mesh.add_vertex(p, {});
+    mesh.add_polygon(std::vector<Index>{0, 1, 2, 3, 4});
+    mesh.add_polygon(std::vector<Index>{1, 5, 6, 2});
+    mesh.add_polygon(std::vector<Index>{2, 6, 7, 3});
+    mesh.feature_edges.push_back({0, 1, 0});
+    const CoarseMesh quads = make_quad_dominant(mesh);
+    EXPECT_EQ(quads.polygon_count(), 4u);
+    EXPECT_EQ(quads.points, mesh.points);
+    EXPECT_EQ(quads.feature_edges.size(), 1u);
+    EXPECT_EQ(make_triangles(mesh, core::TriangleTree({}, {})).polygon_count(), 7u);
+    EXPECT_EQ(limit_degree(mesh, 4).polygon_count(), 4u);
+    EXPECT_EQ(limit_degree(mesh, 5).polygon_count(), 3u);
+    EXPECT_EQ(limit_degree(mesh, 3).polygon_count(), 7u);
+}
+
+TEST(Templates, DegreesAreLimited) {
+    CoarseMesh mesh;
+    std::vector<Index> ring;
+    for (const Point3& p : regular(37)) ring.push_back(mesh.add_vertex(p, {}));
+    mesh.add_polygon(ring);
+    for (const std::size_t most : {3u, 4u, 6u, 9u}) {
+        const CoarseMesh cut = limit_degree(mesh, most);
+        double sum = 0.0;
+        for (std::size_t q = 0; q < cut.polygon_count(); ++q) {
+            EXPECT_LE(cut.polygon(q).size(), most);
+            const auto piece = cut.polygon(q);
+            sum += area(cut.points, {piece.begin(), piece.end()});
+        }
+        EXPECT_NEAR(sum, 18.5 * std::sin(2.0 * std::numbers::pi / 37.0), 1e-12);
+    }
+}
+
+}  // namespace
+}  // namespace certa::remeshing
