@@ -12,6 +12,7 @@ using Action = std::function<ExitCode()>;
 void add_conform_command(CLI::App& app, Action& action);
 void add_check_command(CLI::App& app, Action& action);
 void add_curvature_command(CLI::App& app, Action& action);
+void add_remesh_command(CLI::App& app, Action& action);
 void add_implicit_command(CLI::App& app, Action& action);
 void add_info_command(CLI::App& app, Action& action);
 void add_convert_command(CLI::App& app, Action& action);

@@ -41,6 +41,7 @@ int run(int argc, char** argv) {
     certa::cli::add_conform_command(app, action);
 #endif
     certa::cli::add_curvature_command(app, action);
+    certa::cli::add_remesh_command(app, action);
     certa::cli::add_implicit_command(app, action);
     certa::cli::add_check_command(app, action);
     certa::cli::add_info_command(app, action);

@@ -320,6 +320,10 @@ template void set_option(const Option<CurvatureOptions>&, CurvatureOptions&, std
 template std::string value_of(const Option<CurvatureOptions>&, const CurvatureOptions&);
 template std::string value_name_of(const Option<CurvatureOptions>&);
 template std::string help_of(const Option<CurvatureOptions>&);
+template void set_option(const Option<RemeshOptions>&, RemeshOptions&, std::string_view);
+template std::string value_of(const Option<RemeshOptions>&, const RemeshOptions&);
+template std::string value_name_of(const Option<RemeshOptions>&);
+template std::string help_of(const Option<RemeshOptions>&);
 template void set_option(const Option<OutputOptions>&, OutputOptions&, std::string_view);
 template std::string value_of(const Option<OutputOptions>&, const OutputOptions&);
 template std::string value_name_of(const Option<OutputOptions>&);

@@ -5,6 +5,7 @@
 #include <certa/curvature.h>
 #include <certa/implicit.h>
 #include <certa/io.h>
+#include <certa/remeshing.h>
 #include <certa/view.h>
 
 #include <cstdint>
@@ -84,6 +85,10 @@ struct MemberOf<CurvatureOptions> {
     using type = std::variant<bool CurvatureOptions::*, Choice<CurvatureOptions>, Spelled<CurvatureOptions>>;
 };
 template <>
+struct MemberOf<RemeshOptions> {
+    using type = std::variant<double RemeshOptions::*, Choice<RemeshOptions>, Spelled<RemeshOptions>>;
+};
+template <>
 struct MemberOf<OutputOptions> {
     using type = std::variant<Choice<OutputOptions>>;
 };
@@ -94,6 +99,7 @@ std::span<const Option<CurvatureOptions>> curvature_options();
 std::span<const Option<OutputOptions>> output_options();  ///< the last one, reference, is for labelled meshes only
 std::span<const Option<ViewOptions>> view_options();
 std::span<const Option<ImplicitOptions>> implicit_options();
+std::span<const Option<RemeshOptions>> remesh_options();
 
 /// "rings", "ball" or "geodesic"
 std::string neighborhood_name(const CurvatureOptions& options);

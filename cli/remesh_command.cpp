@@ -1,0 +1,214 @@
+// `certa remesh INPUT [-o OUT]`: polygons along lines of curvature.
+//
+// Plan: read, make one surface of triangles, take tagged edges from the file's segments and from --features, remesh,
+// report, write. Segments of the output are the sides that cover creases and boundary, with the field "curve".
+#include <certa/curvature.h>
+#include <certa/remeshing.h>
+
+#include <charconv>
+#include <fstream>
+#include <memory>
+
+#include "commands.h"
+#include "interrupt.h"
+#include "report.h"
+#include "session.h"
+
+namespace certa::cli {
+namespace {
+
+struct RemeshArguments {
+    CommonFlags common;
+    FileArgument input, output, lines;
+    RemeshOptions options;
+    frontend::OutputOptions output_options;
+    std::string features;
+    bool no_placement = false;
+};
+
+/// Pairs of vertex numbers that count from 1, one pair a line; `#` starts a comment.
+std::vector<Edge> read_edges(const std::string& path, std::size_t vertices) {
+    std::ifstream file(path);
+    if (!file) throw IoError(path, 0, "cannot be read");
+    std::vector<Edge> edges;
+    std::string line;
+    for (std::uint64_t number = 1; std::getline(file, line); ++number) {
+        const char* at = line.data();
+        const char* end = line.data() + std::min(line.find('#'), line.size());
+        std::vector<std::uint32_t> ends;
+        while (at != end) {
+            if (*at == ' ' || *at == '\t' || *at == '\r' || *at == ',') {
+                ++at;
+                continue;
+            }
+            std::uint32_t vertex = 0;
+            const auto [next, error] = std::from_chars(at, end, vertex);
+            if (error != std::errc() || vertex == 0)
+                throw IoError(path, number, "expected the number of a vertex, from 1");
+            if (vertex > vertices)
+                throw IoError(path, number,
+                              "names vertex " + std::to_string(vertex) + " of " + std::to_string(vertices));
+            ends.push_back(vertex - 1);
+            at = next;
+        }
+        if (ends.empty()) continue;
+        if (ends.size() != 2) throw IoError(path, number, "expected two vertices of an edge");
+        edges.push_back({VertexId{ends[0]}, VertexId{ends[1]}});
+    }
+    return edges;
+}
+
+MeshDocument document_of(const RemeshResult& result) {
+    MeshDocument document;
+    document.complex.positions = result.mesh.positions;
+    document.complex.corners = result.mesh.corners;
+    document.complex.polygon_offsets = result.mesh.offsets;
+    for (std::size_t i = 0; i + 1 < result.mesh.offsets.size(); ++i)
+        document.complex.facet_offsets.push_back(static_cast<std::uint32_t>(i + 1));
+    document.complex.hole_offsets.assign(result.mesh.offsets.size(), 0);
+    return document;
+}
+
+/// Lines as segments with a family (1 min, 2 max), umbilics as points with their type.
+MeshDocument line_document(const RemeshResult& result) {
+    MeshDocument document;
+    std::vector<std::int64_t> family, umbilic;
+    for (const CurvatureLine& line : result.lines) {
+        const std::uint32_t first = static_cast<std::uint32_t>(document.complex.positions.size());
+        const std::uint32_t count = static_cast<std::uint32_t>(line.points.size());
+        document.complex.positions.insert(document.complex.positions.end(), line.points.begin(), line.points.end());
+        for (std::uint32_t i = 0; i + 1 < count + (line.closed ? 1U : 0U); ++i) {
+            document.complex.segments.push_back({VertexId{first + i}, VertexId{first + (i + 1) % count}});
+            family.push_back(line.maximum ? 2 : 1);
+        }
+    }
+    umbilic.resize(document.complex.positions.size(), 0);
+    for (const Umbilic& u : result.umbilics) {
+        document.complex.positions.push_back(u.place);
+        umbilic.push_back(u.half_turns);
+    }
+    document.fields.push_back({"family", Location::segments, 1, std::move(family)});
+    document.fields.push_back({"umbilic_half_turns", Location::vertices, 1, std::move(umbilic)});
+    return document;
+}
+
+Json json_of(const RemeshStatistics& s) {
+    Json json = {{"input_vertices", s.input_vertices},
+                 {"input_triangles", s.input_triangles},
+                 {"components", s.components},
+                 {"euler_characteristic", s.euler_characteristic},
+                 {"boundary_loops", s.boundary_loops},
+                 {"feature_edges", s.feature_edges},
+                 {"feature_curves", s.feature_curves},
+                 {"corners", s.corners},
+                 {"unused_vertices", s.unused_vertices},
+                 {"degenerate_triangles", s.degenerate_triangles},
+                 {"flipped_triangles", s.flipped_triangles},
+                 {"non_manifold_edges", s.non_manifold_edges},
+                 {"split_vertices", s.split_vertices},
+                 {"wedges", s.wedges},
+                 {"trisectors", s.trisectors},
+                 {"umbilic_half_turns", s.umbilic_half_turns},
+                 {"lines_min", s.lines_min},
+                 {"lines_max", s.lines_max},
+                 {"closed_lines", s.closed_lines},
+                 {"spacing_error", s.spacing_error},
+                 {"smoothing", s.smoothing},
+                 {"rounds", s.rounds},
+                 {"vertices", s.vertices},
+                 {"faces", s.faces},
+                 {"triangles", s.triangles},
+                 {"quads", s.quads},
+                 {"t_nodes", s.t_nodes},
+                 {"quad_share_with_t", s.quad_share_with_t},
+                 {"quad_share_without_t", s.quad_share_without_t}};
+    json["notes"] = s.notes;
+    return json;
+}
+
+void say_result(Session& session, const RemeshStatistics& s) {
+    using frontend::text_of;
+    session.say("input        " + counted(s.input_vertices, "vertex", "vertices") + ", " +
+                counted(s.input_triangles, "triangle") + ", " + counted(s.components, "component") + ", " +
+                counted(s.boundary_loops, "boundary loop") + ", " + counted(s.feature_edges, "feature edge"));
+    session.say("lines        " + std::to_string(s.lines_max) + " max, " + std::to_string(s.lines_min) + " min, " +
+                std::to_string(s.closed_lines) + " closed; " + counted(s.wedges, "wedge") + ", " +
+                counted(s.trisectors, "trisector"));
+    const double share = s.faces > 0 ? 100.0 * static_cast<double>(s.quads) / static_cast<double>(s.faces) : 0.0;
+    session.say("result       " + counted(s.vertices, "vertex", "vertices") + ", " + counted(s.faces, "face") + ", " +
+                counted(s.quads, "quad") + " (" + std::to_string(static_cast<int>(share)) + " %)");
+    for (const std::string& note : s.notes) session.warn(note);
+}
+
+ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
+    if (arguments.output.given()) session.require_writable(arguments.output);
+    if (arguments.lines.given()) session.require_writable(arguments.lines);
+    const MeshDocument document = session.read(arguments.input, "input");
+    const std::uint64_t corners = document.complex.corners.size() + 12 * document.tetrahedra.size();
+    session.require_memory(700 * corners + 400 * document.complex.positions.size(), "remeshing this surface");
+    const TriangulatedSurface surface = session.timed("triangulate", [&] { return triangulate(document); });
+    arguments.options.placement = !arguments.no_placement;
+    arguments.options.lines = arguments.lines.given();
+    arguments.options.features = document.complex.segments;
+    if (!arguments.features.empty())
+        for (const Edge& edge : read_edges(arguments.features, document.complex.positions.size()))
+            arguments.options.features.push_back(edge);
+    session.report()["options"] = to_json(frontend::remesh_options(), arguments.options, 0.0);
+    session.report()["options"]["placement"] = arguments.options.placement;
+    const RemeshResult result = session.timed("remesh", [&] {
+        const GracefulScope graceful;
+        return remesh(surface.mesh, arguments.options, session.control());
+    });
+    if (result.outcome == Outcome::cancelled) return ExitCode::interrupted;
+    session.report()["outcome"] = name_of(result.outcome);
+    session.report()["statistics"] = json_of(result.statistics);
+    for (const auto& [stage, seconds] : result.statistics.stage_seconds)
+        session.report()["stage_seconds"][stage] = seconds;
+    say_result(session, result.statistics);
+    for (const auto& [stage, seconds] : result.statistics.stage_seconds)
+        session.detail(stage + " " + frontend::text_of(seconds) + " s");
+    if (interrupt_flag()) return ExitCode::interrupted;
+    if (arguments.output.given()) session.write(arguments.output, document_of(result), arguments.output_options);
+    if (arguments.lines.given()) session.write(arguments.lines, line_document(result), arguments.output_options);
+    return result.outcome == Outcome::done ? ExitCode::done : ExitCode::unable;
+}
+
+}  // namespace
+
+void add_remesh_command(CLI::App& app, Action& action) {
+    auto arguments = std::make_shared<RemeshArguments>();
+    CLI::App* command = app.add_subcommand(
+        "remesh", "Few polygons along lines of curvature: anisotropic, quad-dominant, with creases and boundary kept");
+    command->footer(
+        "Without --error, --vertices or --faces the error is about 0.2 % of the diagonal.\n"
+        "Examples:\n  certa remesh scan.ply --vertices 1500 -o coarse.obj\n"
+        "  certa remesh part.off --error 0.1% --lines lines.vtu -o part.obj");
+    command->add_option("INPUT", arguments->input.path, "surface mesh (-: standard input)")->required();
+    command
+        ->add_option("-o", arguments->output.path,
+                     "polygon mesh to write (-: standard output); without it only the report is printed")
+        ->type_name("OUT");
+    add_format_option(*command, "--input-format", arguments->input);
+    add_format_option(*command, "--output-format", arguments->output);
+    // `output` here is what the polygons are; the file's name has -o.
+    add_options(*command, frontend::remesh_options(), arguments->options);
+    command->get_option("--error")->excludes("--vertices", "--faces");
+    command->get_option("--vertices")->excludes("--faces");
+    command
+        ->add_option("--features", arguments->features,
+                     "creases, whatever their angle: a file with two vertex numbers a line, from 1")
+        ->type_name("FILE");
+    command->add_option("--lines", arguments->lines.path, "also write lines and umbilics (.vtu, .msh)")
+        ->type_name("FILE");
+    command->add_flag("--no-placement", arguments->no_placement, "leave vertices on the input surface");
+    add_options(*command, frontend::output_options().first(2), arguments->output_options);
+    add_common_flags(*command, arguments->common);
+    command->callback([arguments, &action] {
+        action = [arguments] {
+            Session session("remesh", arguments->common);
+            return session.run([&] { return run_remesh(session, *arguments); });
+        };
+    });
+}
+
+}  // namespace certa::cli

@@ -1,0 +1,94 @@
+#pragma once
+// Part II, chapter 4: anisotropic, quad-dominant polygons along lines of curvature, on surfaces of any genus.
+#include <certa/error.h>
+#include <certa/mesh.h>
+#include <certa/run_control.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace certa {
+
+/// What the polygons of the result are.
+enum class RemeshOutput : std::uint8_t {
+    polygons,       ///< as the lines cut them: a vertex in the side of a polygon is one of its corners
+    quad_dominant,  ///< quads and triangles only
+    triangles,
+};
+
+struct RemeshOptions {
+    /// How fine: at most one of the three; without any, an error of 0.2 % of the diagonal.
+    std::optional<Length> error = std::nullopt;  ///< bound on the distance between result and input, both ways
+    std::optional<std::uint64_t> vertices = std::nullopt;
+    std::optional<std::uint64_t> faces = std::nullopt;
+    double isotropy = 0.0;                        ///< rho of the thesis, in [0, 1]: 0 follows both curvatures, 1 none
+    double feature_angle_radians = 0.6981;        ///< an edge is a crease above this angle between its faces' normals
+    std::vector<Edge> features;                   ///< edges of the input that are creases whatever their angle
+    std::optional<Length> smooth = std::nullopt;  ///< length over which directions are smoothed; chosen when empty
+    double transfer = 0.5;                        ///< lines per length grow like |k|^transfer; 0.5 is the thesis's
+    RemeshOutput output = RemeshOutput::quad_dominant;
+    std::uint64_t max_degree = 0;  ///< polygons: at most so many corners; 0: any number
+    bool placement = true;         ///< move vertices to where the error is least
+    std::uint64_t subdivide = 0;   ///< rounds of quad/triangle subdivision of the result
+    bool lines = false;            ///< also return the lines and umbilics
+};
+
+/// A line of curvature on the input.
+struct CurvatureLine {
+    bool maximum = false;  ///< runs along the direction of k_max
+    bool closed = false;
+    std::vector<Point3> points;
+};
+/// Where the directions are not defined: index +1/2 (wedge) or -1/2 (trisector).
+struct Umbilic {
+    Point3 place;
+    std::uint32_t face = 0;  ///< triangle of the input
+    int half_turns = 0;      ///< index times two
+};
+
+struct RemeshStatistics {
+    std::size_t input_vertices = 0, input_triangles = 0, components = 0;
+    std::int64_t euler_characteristic = 0;
+    std::size_t boundary_loops = 0, feature_edges = 0, feature_curves = 0, corners = 0;
+    std::size_t unused_vertices = 0, degenerate_triangles = 0, flipped_triangles = 0, non_manifold_edges = 0;
+    std::size_t split_vertices = 0;  ///< where several sheets met in one vertex of the input
+    std::size_t wedges = 0, trisectors = 0;
+    int umbilic_half_turns = 0;  ///< sum of all indices times two
+    std::size_t lines_min = 0, lines_max = 0, closed_lines = 0;
+    double spacing_error = 0.0;  ///< epsilon of the spacing of lines, as resolved
+    double smoothing = 0.0;      ///< smoothing length, as resolved
+    std::size_t rounds = 0;      ///< networks that were traced to meet what was asked for
+    std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0;
+    std::size_t t_nodes = 0;            ///< polygons' corners without a turn, before they became quads and triangles
+    double quad_share_with_t = 0.0;     ///< share of polygons with four corners, T-nodes counted as corners
+    double quad_share_without_t = 0.0;  ///< not counted
+    std::vector<std::string> notes;     ///< repairs and what could not be had, a sentence each
+    std::vector<std::pair<std::string, double>> stage_seconds;
+};
+
+struct RemeshResult {
+    Outcome outcome = Outcome::done;
+    PolygonMesh mesh;
+    std::vector<Edge> feature_edges;            ///< sides of polygons that cover creases and boundary
+    std::vector<std::uint32_t> feature_curves;  ///< per feature edge: number of the curve
+    std::vector<CurvatureLine> lines;
+    std::vector<Umbilic> umbilics;
+    RemeshStatistics statistics;
+};
+
+/// Polygons along lines of curvature.
+///
+/// Input:      a surface with or without boundary, of any genus and any number of components. Triangles may be turned
+///             either way (they are turned alike); edges of more than two triangles become creases.
+/// Result:     an oriented polygon mesh with the input's components, genus and boundary loops; creases, boundary and
+///             corners of the input are covered by sides and corners of polygons.
+/// Errors:     InputError empty_input, index_out_of_range, non_finite_coordinate, option_out_of_range, and
+///             conflicting_orientation where a component has only one side.
+/// Cost:       O(n log n) in the input, tracing once per round of the search for a count; memory linear.
+/// Source:     thesis, Part II chapter 4; what differs and why: docs/remesh.md.
+RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options = {}, const RunControl& control = {});
+
+}  // namespace certa

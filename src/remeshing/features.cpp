@@ -1,0 +1,174 @@
+// Creases, boundary and corners (remesh, stage 1; thesis 4.1.5).
+//
+// Plan: mark boundary edges, tagged edges, and edges with a dihedral angle above the limit; forget groups of creases by
+// angle that are shorter than a few edges and touch nothing else (noise, not design); corners are where not exactly two
+// marked edges meet, or two meet at a sharp turn; chains between corners are curves, closed chains too.
+#include <algorithm>
+#include <numbers>
+#include <unordered_set>
+
+#include "core/union_find.h"
+#include "remeshing/work_mesh.h"
+
+namespace certa::remeshing {
+namespace {
+
+enum class Mark : std::uint8_t { none, angle, tagged, boundary };
+
+Point3 normal_of(const WorkMesh& mesh, Index f) {
+    const auto& [a, b, c] = mesh.faces[f];
+    return cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]);
+}
+
+std::vector<Mark> mark_edges(const WorkMesh& mesh, const RemeshOptions& options) {
+    std::unordered_set<std::uint64_t> tagged;
+    const auto key = [](Index a, Index b) {
+        return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
+    };
+    for (const Edge& edge : options.features) tagged.insert(key(index_of(edge[0]), index_of(edge[1])));
+    std::vector<Mark> marks(mesh.edge_halfedges.size(), Mark::none);
+    const double limit = std::cos(options.feature_angle_radians);
+    for (std::size_t e = 0; e < marks.size(); ++e) {
+        const Index h = mesh.edge_halfedges[e], o = mesh.opposites[h];
+        if (o == no_index) {
+            marks[e] = Mark::boundary;
+            continue;
+        }
+        const Index a = mesh.point_sources[mesh.start_of(h)], b = mesh.point_sources[mesh.end_of(h)];
+        if (!tagged.empty() && tagged.contains(key(a, b))) {
+            marks[e] = Mark::tagged;
+            continue;
+        }
+        const Point3 n = normal_of(mesh, h / 3), m = normal_of(mesh, o / 3);
+        const double lengths = norm(n) * norm(m);
+        if (lengths > 0.0 && dot(n, m) < limit * lengths) marks[e] = Mark::angle;
+    }
+    return marks;
+}
+
+std::vector<Index> count_at_vertices(const WorkMesh& mesh, const std::vector<Mark>& marks) {
+    std::vector<Index> degree(mesh.points.size(), 0);
+    for (std::size_t e = 0; e < marks.size(); ++e) {
+        if (marks[e] == Mark::none) continue;
+        const Index h = mesh.edge_halfedges[e];
+        ++degree[mesh.start_of(h)];
+        ++degree[mesh.end_of(h)];
+    }
+    return degree;
+}
+
+/// Groups of creases by angle that nothing else holds up and that are short.
+void forget_noise(const WorkMesh& mesh, std::vector<Mark>& marks) {
+    core::UnionFind sets(mesh.points.size());
+    for (std::size_t e = 0; e < marks.size(); ++e) {
+        const Index h = mesh.edge_halfedges[e];
+        if (marks[e] != Mark::none) sets.unite(mesh.start_of(h), mesh.end_of(h));
+    }
+    std::vector<double> length(mesh.points.size(), 0.0);
+    std::vector<bool> held(mesh.points.size(), false);
+    for (std::size_t e = 0; e < marks.size(); ++e) {
+        if (marks[e] == Mark::none) continue;
+        const Index group = sets.find(mesh.start_of(mesh.edge_halfedges[e]));
+        length[group] += mesh.lengths[e];
+        if (marks[e] != Mark::angle) held[group] = true;
+    }
+    const double least = std::min(0.03 * mesh.diagonal, 12.0 * mesh.mean_edge);
+    for (std::size_t e = 0; e < marks.size(); ++e) {
+        if (marks[e] != Mark::angle) continue;
+        const Index group = sets.find(mesh.start_of(mesh.edge_halfedges[e]));
+        if (!held[group] && length[group] < least) marks[e] = Mark::none;
+    }
+}
+
+class CurveBuilder {
+public:
+    CurveBuilder(WorkMesh& mesh, const std::vector<Mark>& marks) : mesh_(mesh), marks_(marks) {
+        const std::vector<Index> degree = count_at_vertices(mesh, marks);
+        offsets_.assign(mesh.points.size() + 1, 0);
+        for (std::size_t v = 0; v < degree.size(); ++v) offsets_[v + 1] = offsets_[v] + degree[v];
+        incident_.resize(offsets_.back());
+        std::vector<Index> at(offsets_.begin(), offsets_.end() - 1);
+        for (std::size_t e = 0; e < marks.size(); ++e) {
+            if (marks[e] == Mark::none) continue;
+            const Index h = mesh.edge_halfedges[e];
+            incident_[at[mesh.start_of(h)]++] = static_cast<Index>(e);
+            incident_[at[mesh.end_of(h)]++] = static_cast<Index>(e);
+        }
+        mesh_.is_corner.assign(mesh.points.size(), false);
+        for (Index v = 0; v < degree.size(); ++v) mesh_.is_corner[v] = is_corner(v, degree[v]);
+    }
+
+    void build() {
+        mesh_.edge_curves.assign(marks_.size(), no_index);
+        for (Index v = 0; v < mesh_.points.size(); ++v)
+            if (mesh_.is_corner[v])
+                for (Index i = offsets_[v]; i < offsets_[v + 1]; ++i) follow(v, incident_[i]);
+        for (Index e = 0; e < marks_.size(); ++e)
+            if (marks_[e] != Mark::none) follow(mesh_.start_of(mesh_.edge_halfedges[e]), e);
+    }
+
+private:
+    Index other_end(Index edge, Index v) const {
+        const Index h = mesh_.edge_halfedges[edge];
+        return mesh_.start_of(h) == v ? mesh_.end_of(h) : mesh_.start_of(h);
+    }
+    bool is_corner(Index v, Index degree) const {
+        if (degree != 2) return degree > 0;
+        const Index a = incident_[offsets_[v]], b = incident_[offsets_[v] + 1];
+        if ((marks_[a] == Mark::boundary) != (marks_[b] == Mark::boundary)) return true;
+        const Point3 p = mesh_.points[v] - mesh_.points[other_end(a, v)];
+        const Point3 q = mesh_.points[other_end(b, v)] - mesh_.points[v];
+        return dot(p, q) < std::cos(turn) * norm(p) * norm(q);
+    }
+    void follow(Index v, Index edge) {
+        if (mesh_.edge_curves[edge] != no_index) return;
+        const Index number = static_cast<Index>(mesh_.curves.size());
+        FeatureCurve curve;
+        curve.boundary = marks_[edge] == Mark::boundary;
+        const Index start = v;
+        curve.vertices.push_back(v);
+        while (true) {
+            mesh_.edge_curves[edge] = number;
+            curve.edges.push_back(edge);
+            v = other_end(edge, v);
+            if (v == start && !mesh_.is_corner[v]) {
+                curve.closed = true;
+                break;
+            }
+            curve.vertices.push_back(v);
+            if (mesh_.is_corner[v]) break;
+            const Index a = incident_[offsets_[v]], b = incident_[offsets_[v] + 1];
+            edge = a == edge ? b : a;
+        }
+        mesh_.curves.push_back(std::move(curve));
+    }
+
+    static constexpr double turn = 45.0 * std::numbers::pi / 180.0;
+    WorkMesh& mesh_;
+    const std::vector<Mark>& marks_;
+    std::vector<Index> offsets_, incident_;
+};
+
+}  // namespace
+
+void find_features(WorkMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
+    std::vector<Mark> marks = mark_edges(mesh, options);
+    forget_noise(mesh, marks);
+    CurveBuilder(mesh, marks).build();
+    statistics.feature_curves = mesh.curves.size();
+    statistics.feature_edges =
+        static_cast<std::size_t>(std::count_if(marks.begin(), marks.end(), [](Mark m) { return m != Mark::none; }));
+    statistics.corners = static_cast<std::size_t>(std::count(mesh.is_corner.begin(), mesh.is_corner.end(), true));
+    core::UnionFind loops(mesh.points.size());
+    std::vector<bool> on_boundary(mesh.points.size(), false);
+    for (std::size_t e = 0; e < marks.size(); ++e) {
+        if (marks[e] != Mark::boundary) continue;
+        const Index a = mesh.start_of(mesh.edge_halfedges[e]), b = mesh.end_of(mesh.edge_halfedges[e]);
+        on_boundary[a] = on_boundary[b] = true;
+        loops.unite(a, b);
+    }
+    for (Index v = 0; v < mesh.points.size(); ++v)
+        statistics.boundary_loops += on_boundary[v] && loops.find(v) == v ? 1 : 0;
+}
+
+}  // namespace certa::remeshing

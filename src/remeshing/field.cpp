@@ -1,0 +1,291 @@
+// Tensors, smoothing and umbilics (thesis 4.1.1 to 4.1.5; remesh, stages 2 to 4).
+//
+// Plan: the surface is cut open along features, so that the curvature room measures one-sided by itself. The deviator's
+// direction becomes a complex square per wedge. Smoothing solves (L + lambda M W) u = lambda M W q with the connection
+// Laplacian of order two, q the unit direction and W a saturating confidence: strong regions do not leak into weak
+// ones. Conjugate gradients: the screen makes the system well conditioned wherever there is something to follow.
+// Umbilics are the triangles around which the directions turn; the linear zero only says where in the triangle.
+#include "remeshing/field.h"
+
+#include <certa/curvature.h>
+
+#include <algorithm>
+#include <numbers>
+
+#include "core/assert.h"
+
+namespace certa::remeshing {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// The surface with one vertex per wedge.
+TriangleMesh cut_open(const WorkMesh& mesh) {
+    TriangleMesh cut;
+    cut.positions.resize(mesh.wedge_count());
+    for (Index w = 0; w < mesh.wedge_count(); ++w) cut.positions[w] = mesh.points[mesh.wedge_vertices[w]];
+    cut.triangles.resize(mesh.faces.size());
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        for (Index i = 0; i < 3; ++i) cut.triangles[f][i] = VertexId{mesh.wedges[3 * f + i]};
+    return cut;
+}
+
+/// Intrinsic angle of a tangent direction at a wedge, modulo pi: between which half-edges it points, and how far.
+double intrinsic_angle(const WorkMesh& mesh, Index wedge, const Point3& normal, const Point3& direction) {
+    const Point3& o = mesh.points[mesh.wedge_vertices[wedge]];
+    const Point3 side = cross(normal, direction);
+    const auto angle_to = [&](const Point3& p) {  // of p against the direction
+        const Point3 d = p - o;
+        return std::atan2(dot(d, side), dot(d, direction));
+    };
+    Index corner = mesh.wedge_first[wedge];
+    const Index first = corner;
+    double best = 0.0, best_excess = 1e300;
+    do {
+        const double from = angle_to(mesh.points[mesh.end_of(corner)]);
+        const double to = angle_to(mesh.points[mesh.start_of(previous_of(corner))]);
+        double opening = to - from;
+        if (opening <= 0.0) opening += 2.0 * pi;
+        for (const double turn : {0.0, pi}) {
+            double ahead = turn - from;  // from the first side to the direction, or to its opposite
+            while (ahead < -pi) ahead += 2.0 * pi;
+            while (ahead > pi) ahead -= 2.0 * pi;
+            const double excess = std::max({0.0, -ahead, ahead - opening});
+            if (excess < best_excess) {
+                best_excess = excess;
+                best = mesh.corner_start[corner] + mesh.corner_angle[corner] * ahead / opening;
+            }
+        }
+        corner = mesh.next_corner(corner);
+    } while (corner != no_index && corner != first && best_excess > 0.0);
+    return best;
+}
+
+/// Symmetric matrix by rows, as the connection Laplacian has it: neighbours, weights and transports.
+struct Laplacian {
+    std::vector<std::uint64_t> offsets;
+    std::vector<Index> columns;
+    std::vector<double> weights;
+    std::vector<Complex> transports;  ///< brings the neighbour's square into this wedge's frame
+    std::vector<double> diagonal, mass;
+};
+
+std::array<double, 3> cotangents(const WorkMesh& mesh, Index f, double& area) {
+    std::array<double, 3> cot{};
+    const Complex b = mesh.local(f, 1), c = mesh.local(f, 2);
+    area = 0.5 * b.real() * c.imag();
+    const std::array<Complex, 3> p{Complex(0.0), b, c};
+    for (std::size_t i = 0; i < 3; ++i) {  // of the angle opposite half-edge i
+        const Complex u = p[i] - p[(i + 2) % 3], v = p[(i + 1) % 3] - p[(i + 2) % 3];
+        const Complex turn = v * std::conj(u);
+        cot[i] = turn.real() / turn.imag();
+    }
+    return cot;
+}
+
+Laplacian build_laplacian(const WorkMesh& mesh) {
+    Laplacian laplacian;
+    const Index wedges = mesh.wedge_count();
+    std::vector<double> cot(mesh.edges.size());
+    laplacian.mass.assign(wedges, 0.0);
+    laplacian.diagonal.assign(wedges, 0.0);
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        double area = 0.0;
+        const auto values = cotangents(mesh, f, area);
+        for (Index i = 0; i < 3; ++i) {
+            cot[3 * f + i] = values[i];
+            laplacian.mass[mesh.wedges[3 * f + i]] += area / 3.0;
+        }
+    }
+    const auto weight_of = [&](Index h) {
+        const double sum = mesh.is_feature(h) ? cot[h] : cot[h] + cot[mesh.opposites[h]];
+        return std::clamp(0.5 * sum, 1e-3, 1e3);
+    };
+    laplacian.offsets.assign(1, 0);
+    const auto add = [&](Index w, Index other, double weight, double turn) {
+        laplacian.columns.push_back(other);
+        laplacian.weights.push_back(weight);
+        laplacian.transports.push_back(std::polar(1.0, 2.0 * turn));
+        laplacian.diagonal[w] += weight;
+    };
+    for (Index w = 0; w < wedges; ++w) {
+        Index c = mesh.wedge_first[w];
+        const Index first = c;
+        do {
+            const Index n = next_of(c), p = previous_of(c);
+            add(w, mesh.wedges[n], weight_of(c), mesh.corner_start[c] - mesh.corner_start[n] - mesh.corner_angle[n]);
+            const Index next = mesh.next_corner(c);
+            if (next == no_index)
+                add(w, mesh.wedges[p], weight_of(p),
+                    mesh.corner_start[c] + mesh.corner_angle[c] - mesh.corner_start[p]);
+            c = next;
+        } while (c != no_index && c != first);
+        laplacian.offsets.push_back(laplacian.columns.size());
+    }
+    return laplacian;
+}
+
+/// Conjugate gradients with the diagonal as preconditioner, for (L + screen) u = right.
+void solve(const Laplacian& laplacian, const std::vector<double>& screen, const std::vector<Complex>& right,
+           std::vector<Complex>& u, const RunControl& control) {
+    const std::size_t n = u.size();
+    std::vector<Complex> r(n), p(n), ap(n);
+    std::vector<double> inverse(n);
+    const auto apply = [&](const std::vector<Complex>& x, std::vector<Complex>& y) {
+        for (std::size_t i = 0; i < n; ++i) {
+            Complex sum = (laplacian.diagonal[i] + screen[i]) * x[i];
+            for (std::uint64_t k = laplacian.offsets[i]; k < laplacian.offsets[i + 1]; ++k) {
+                const Complex t = laplacian.transports[k], v = x[laplacian.columns[k]];
+                const double w = laplacian.weights[k];
+                sum -= Complex(w * (t.real() * v.real() - t.imag() * v.imag()),
+                               w * (t.real() * v.imag() + t.imag() * v.real()));
+            }
+            y[i] = sum;
+        }
+    };
+    const auto product = [&](const std::vector<Complex>& a, const std::vector<Complex>& b) {
+        double sum = 0.0;
+        for (std::size_t i = 0; i < n; ++i) sum += a[i].real() * b[i].real() + a[i].imag() * b[i].imag();
+        return sum;
+    };
+    for (std::size_t i = 0; i < n; ++i) inverse[i] = 1.0 / (laplacian.diagonal[i] + screen[i] + 1e-300);
+    apply(u, ap);
+    for (std::size_t i = 0; i < n; ++i) r[i] = right[i] - ap[i];
+    std::vector<Complex> z(n);
+    for (std::size_t i = 0; i < n; ++i) z[i] = inverse[i] * r[i];
+    p = z;
+    double rz = product(r, z);
+    double start = 0.0;
+    for (std::size_t i = 0; i < n; ++i) start += inverse[i] * std::norm(right[i]);
+    for (int round = 0; round < 2000 && rz > 1e-10 * start && !control.cancelled(); ++round) {
+        apply(p, ap);
+        const double pap = product(p, ap);
+        if (!(pap > 0.0)) break;
+        const double alpha = rz / pap;
+        for (std::size_t i = 0; i < n; ++i) u[i] += alpha * p[i], r[i] -= alpha * ap[i];
+        for (std::size_t i = 0; i < n; ++i) z[i] = inverse[i] * r[i];
+        const double next = product(r, z), beta = next / rz;
+        rz = next;
+        for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
+    }
+}
+
+/// Wedges that no confidence reaches: a direction along a feature, so that everything has one.
+void direct_flat_parts(const WorkMesh& mesh, DirectionField& field) {
+    for (Index w = 0; w < mesh.wedge_count(); ++w)
+        if (std::norm(field.squares[w]) < 1e-24) field.squares[w] = 1e-12;
+}
+
+std::array<double, 3> linear_zero(const WorkMesh& mesh, const DirectionField& field, Index f, bool& inside) {
+    std::array<Complex, 3> z{};
+    for (Index i = 0; i < 3; ++i) {
+        const Index c = 3 * f + i;
+        const Complex o = mesh.local(f, i), p = mesh.local(f, (i + 1) % 3), q = mesh.local(f, (i + 2) % 3);
+        const double bisector = std::arg(p - o) + 0.5 * std::arg((q - o) * std::conj(p - o));
+        z[i] = field.squares[mesh.wedges[c]] *
+               std::polar(1.0, 2.0 * (bisector - mesh.corner_start[c] - 0.5 * mesh.corner_angle[c]));
+    }
+    // Weights proportional to the signed areas that 0 spans with two values.
+    std::array<double, 3> weights{};
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Complex a = z[(i + 1) % 3], b = z[(i + 2) % 3];
+        weights[i] = a.real() * b.imag() - a.imag() * b.real();
+        sum += weights[i];
+    }
+    inside = sum != 0.0;
+    for (double& w : weights) {
+        w /= sum;
+        inside = inside && w >= 0.0;
+    }
+    if (!inside) weights.fill(1.0 / 3.0);
+    return weights;
+}
+
+}  // namespace
+
+DirectionField measure_directions(const WorkMesh& mesh, const RunControl& control) {
+    DirectionField field;
+    CurvatureOptions options;
+    options.rings = 2;
+    const CurvatureResult curvature = compute_curvature(cut_open(mesh), options, control);
+    if (curvature.outcome != Outcome::done) return field;
+    const Index wedges = mesh.wedge_count();
+    field.k_min = curvature.k_min;
+    field.k_max = curvature.k_max;
+    field.measured.assign(wedges, Complex(0.0));
+    field.confidence.assign(wedges, 0.0);
+    double square = 0.0, area = 0.0;
+    for (Index w = 0; w < wedges; ++w) {
+        const double difference = field.k_max[w] - field.k_min[w];
+        square += curvature.area[w] * difference * difference;
+        area += curvature.area[w];
+    }
+    field.noise = area > 0.0 ? 0.1 * std::sqrt(square / area) : 0.0;
+    // Rounding of coordinates bends a plane by this much.
+    const double floor = 1e-9 / mesh.diagonal;
+    for (Index w = 0; w < wedges; ++w) {
+        const double difference = field.k_max[w] - field.k_min[w];
+        if (!(difference > floor) || curvature.normal[w] == Point3{}) continue;
+        const double g = difference * difference, side = mesh.wedge_closed[w] ? 1.0 : 0.3;
+        field.confidence[w] = side * g / (g + field.noise * field.noise);
+        field.measured[w] = std::polar(1.0, 2.0 * intrinsic_angle(mesh, w, curvature.normal[w], curvature.dir_max[w]));
+    }
+    return field;
+}
+
+void spread_to_halfedges(const WorkMesh& mesh, DirectionField& field) {
+    field.starts.resize(mesh.edges.size());
+    field.ends.resize(mesh.edges.size());
+    for (Index h = 0; h < mesh.edges.size(); ++h) {
+        const Index n = next_of(h);
+        field.starts[h] = field.squares[mesh.wedges[h]] * std::polar(1.0, -2.0 * mesh.corner_start[h]);
+        field.ends[h] =
+            field.squares[mesh.wedges[n]] * std::polar(1.0, -2.0 * (mesh.corner_start[n] + mesh.corner_angle[n]));
+    }
+}
+
+int half_turns_of(const WorkMesh& mesh, const DirectionField& field, Index face) {
+    double sum = -2.0 * pi;
+    for (Index i = 0; i < 3; ++i) {
+        const Index h = 3 * face + i, o = mesh.opposites[h];
+        // One half-edge decides for both sides: a rotation by pi has no sign of its own.
+        const bool own = mesh.is_feature(h) || o == no_index || mesh.along(h);
+        const Index used = own ? h : o;
+        const double turn = std::arg(field.ends[used] * std::conj(field.starts[used]));
+        sum += (own ? turn : -turn) + 2.0 * mesh.corner_angle[h];
+    }
+    return static_cast<int>(std::lround(sum / (2.0 * pi)));
+}
+
+void smooth_directions(const WorkMesh& mesh, DirectionField& field, double length, const RunControl& control) {
+    field.smoothing = length;
+    const Laplacian laplacian = build_laplacian(mesh);
+    const std::size_t n = field.measured.size();
+    std::vector<double> screen(n);
+    std::vector<Complex> right(n);
+    const double lambda = 1.0 / (length * length);
+    field.squares.resize(n);
+    for (std::size_t i = 0; i < n; ++i) {
+        screen[i] = lambda * laplacian.mass[i] * field.confidence[i];
+        right[i] = screen[i] * field.measured[i];
+        field.squares[i] = field.confidence[i] * field.measured[i];
+    }
+    if (length > 0.0) {
+        solve(laplacian, screen, right, field.squares, control);
+    } else {
+        field.squares = field.measured;
+    }
+    direct_flat_parts(mesh, field);
+    spread_to_halfedges(mesh, field);
+    field.umbilics.clear();
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const int turns = half_turns_of(mesh, field, f);
+        if (turns == 0) continue;
+        FieldUmbilic umbilic{f, turns, {}, false};
+        umbilic.weights = linear_zero(mesh, field, f, umbilic.linear_zero);
+        field.umbilics.push_back(umbilic);
+    }
+}
+
+}  // namespace certa::remeshing

@@ -1,0 +1,44 @@
+#pragma once
+// Principal directions on the work mesh: tensors, smoothing, umbilics (thesis 4.1).
+#include "remeshing/work_mesh.h"
+
+namespace certa::remeshing {
+
+/// The families of lines: along the direction of k_max, along that of k_min.
+enum Family : std::uint8_t { along_max = 0, along_min = 1 };
+
+/// A triangle around which the directions turn.
+struct FieldUmbilic {
+    Index face = no_index;
+    int half_turns = 0;  ///< +1: wedge, -1: trisector
+    std::array<double, 3> weights{};
+    bool linear_zero = false;  ///< the place is the zero of the linear field; else the centroid
+};
+
+/// Directions as squares of unit complex numbers along the direction of k_max, one per wedge, in the wedge's frame; and
+/// the same seen from half-edges: relative to the half-edge's direction at its start and at its end. Interpolating
+/// those along an edge gives the same line from both sides.
+struct DirectionField {
+    std::vector<double> k_min, k_max;   ///< per wedge
+    std::vector<double> confidence;     ///< per wedge: of the measured direction, in [0, 1)
+    std::vector<Complex> measured;      ///< unit, or 0
+    std::vector<Complex> squares;       ///< smoothed
+    std::vector<Complex> starts, ends;  ///< per half-edge
+    std::vector<FieldUmbilic> umbilics;
+    double smoothing = 0.0;  ///< length, in the input's unit
+    double noise = 0.0;      ///< sigma: differences of curvature below this say nothing
+
+    /// The squared direction of k_max at t in [0, 1] of the half-edge, relative to it.
+    Complex at(Index halfedge, double t) const { return (1.0 - t) * starts[halfedge] + t * ends[halfedge]; }
+};
+
+/// Curvatures and directions, one-sided at features.
+DirectionField measure_directions(const WorkMesh& mesh, const RunControl& control);
+/// Smooths over `length`; fills squares, starts, ends and umbilics.
+void smooth_directions(const WorkMesh& mesh, DirectionField& field, double length, const RunControl& control);
+/// Half-edge values from the wedges' (part of smooth_directions).
+void spread_to_halfedges(const WorkMesh& mesh, DirectionField& field);
+/// Index of the field around a face, times two: edge rotations and holonomy.
+int half_turns_of(const WorkMesh& mesh, const DirectionField& field, Index face);
+
+}  // namespace certa::remeshing

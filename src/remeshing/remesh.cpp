@@ -1,0 +1,242 @@
+// The whole way from triangles to polygons (thesis, Part II chapter 4; docs/remesh.md).
+//
+// Plan: input and features, directions, smoothing; then rounds of spacing, lines, graph, polygons, until the number of
+// vertices or faces is what was asked for; then placement. Vertices go like 1 / epsilon, so a few steps of the secant
+// rule on logarithms find epsilon; the round that came nearest counts.
+#include <certa/remeshing.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+
+#include "core/assert.h"
+#include "remeshing/polygons.h"
+#include "remeshing/trace_lines.h"
+
+namespace certa {
+namespace remeshing {
+namespace {
+
+class Stopwatch {
+public:
+    explicit Stopwatch(RemeshStatistics& statistics) : statistics_(statistics) {}
+    void stage(const char* name) {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - start_).count();
+        start_ = now;
+        for (auto& [known, sum] : statistics_.stage_seconds)
+            if (known == name) {
+                sum += seconds;
+                return;
+            }
+        statistics_.stage_seconds.push_back({name, seconds});
+    }
+
+private:
+    RemeshStatistics& statistics_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+[[noreturn]] void refuse_option(const std::string& message) {
+    throw InputError({{DefectKind::option_out_of_range, {}, {}, message}});
+}
+
+void check_options(const RemeshOptions& options) {
+    const int goals = options.error.has_value() + options.vertices.has_value() + options.faces.has_value();
+    if (goals > 1) refuse_option("error, vertices and faces exclude each other: give one of them");
+    if (options.error && !(options.error->value > 0.0)) refuse_option("error must be above 0");
+    if ((options.vertices && *options.vertices < 4) || (options.faces && *options.faces < 4))
+        refuse_option("a surface needs four vertices and faces at least");
+    if (!(options.isotropy >= 0.0 && options.isotropy <= 1.0)) refuse_option("isotropy must lie in [0, 1]");
+    if (!(options.transfer >= 0.0 && options.transfer <= 2.0)) refuse_option("transfer must lie in [0, 2]");
+    if (options.smooth && !(options.smooth->value >= 0.0)) refuse_option("smooth must not be below 0");
+    if (options.max_degree != 0 && options.max_degree < 3) refuse_option("max_degree must be 3 at least, or 0");
+}
+
+/// One network and what came of it.
+struct Draft {
+    double error = 0.0;
+    Network network;
+    Graph graph;
+    CoarseMesh polygons;
+    PolygonCounts counts;
+    std::vector<BadRegion> bad;
+};
+
+class Remesher {
+public:
+    Remesher(const TriangleMesh& mesh, const RemeshOptions& options, const RunControl& control)
+        : options_(options),
+          control_(control),
+          watch_(result_.statistics),
+          mesh_(build_work_mesh(mesh, options, result_.statistics)) {
+        watch_.stage("input");
+    }
+
+    RemeshResult run();
+
+private:
+    bool prepare();
+    SpacingRule rule_of(double error) const;
+    double start_error();
+    Draft draft(double error);
+    double count_of(const Draft& draft) const;
+    void search();
+    void finish();
+    void describe_lines();
+
+    const RemeshOptions& options_;
+    const RunControl& control_;
+    RemeshResult result_;
+    Stopwatch watch_;
+    WorkMesh mesh_;
+    DirectionField field_;
+    std::optional<Draft> best_;
+};
+
+SpacingRule Remesher::rule_of(double error) const {
+    SpacingRule rule;
+    rule.error = error;
+    rule.isotropy = options_.isotropy;
+    rule.transfer = options_.transfer;
+    rule.largest = 0.35 * mesh_.diagonal;
+    return rule;
+}
+
+double Remesher::start_error() {
+    if (options_.error) return 2.0 * options_.error->resolve(mesh_.diagonal);
+    if (!options_.vertices && !options_.faces) return 4e-3 * mesh_.diagonal;
+    const double wanted = static_cast<double>(options_.vertices ? *options_.vertices : *options_.faces);
+    double error = 4e-3 * mesh_.diagonal;
+    for (int round = 0; round < 6; ++round)
+        error *=
+            std::clamp(expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error))) / wanted, 0.05, 20.0);
+    return error;
+}
+
+bool Remesher::prepare() {
+    control_.report("curvature", 0.0);
+    field_ = measure_directions(mesh_, control_);
+    watch_.stage("tensors");
+    if (control_.cancelled()) return false;
+    double length = 5.0 * mesh_.mean_edge;
+    if (options_.smooth) length = options_.smooth->resolve(mesh_.diagonal);
+    control_.report("smoothing", 0.2);
+    smooth_directions(mesh_, field_, length, control_);
+    watch_.stage("smoothing");
+    RemeshStatistics& s = result_.statistics;
+    s.smoothing = length;
+    for (const FieldUmbilic& u : field_.umbilics) {
+        s.wedges += u.half_turns > 0 ? 1 : 0;
+        s.trisectors += u.half_turns < 0 ? 1 : 0;
+        s.umbilic_half_turns += u.half_turns;
+    }
+    return !control_.cancelled();
+}
+
+Draft Remesher::draft(double error) {
+    const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error));
+    watch_.stage("spacing");
+    Draft d{error, trace_lines(mesh_, field_, spacing, TraceRule{}, control_), {}, {}, {}, {}};
+    watch_.stage("lines");
+    d.graph = build_graph(d.network, {0.5 * error});
+    simplify_graph(d.graph, d.network);
+    const auto faces = d.graph.trace_faces(mesh_);
+    d.bad = find_bad_regions(d.graph, mesh_, faces);
+    d.polygons = make_polygons(d.graph, faces, d.counts);
+    watch_.stage("arrangement");
+    ++result_.statistics.rounds;
+    return d;
+}
+
+double Remesher::count_of(const Draft& draft) const {
+    return static_cast<double>(options_.faces ? draft.polygons.polygon_count() : draft.polygons.points.size());
+}
+
+void Remesher::search() {
+    double error = start_error();
+    if (!options_.vertices && !options_.faces) {
+        best_.emplace(draft(error));
+        return;
+    }
+    const double wanted = static_cast<double>(options_.vertices ? *options_.vertices : *options_.faces);
+    double best_miss = 1e300;
+    for (int round = 0; round < 8 && !control_.cancelled(); ++round) {
+        Draft d = draft(error);
+        const double count = std::max(count_of(d), 1.0), miss = std::abs(std::log(count / wanted));
+        if (miss < best_miss) {
+            best_miss = miss;
+            best_.emplace(std::move(d));
+        }
+        if (miss < 0.02) break;
+        error *= std::clamp(count / wanted, 0.3, 3.0);
+    }
+}
+
+void Remesher::describe_lines() {
+    const Network& network = best_->network;
+    for (const Line& line : network.lines()) {
+        if (line.faces.empty()) continue;
+        result_.statistics.closed_lines += line.closed ? 1 : 0;
+        ++(line.family == along_max ? result_.statistics.lines_max : result_.statistics.lines_min);
+        if (!options_.lines) continue;
+        CurvatureLine out{line.family == along_max, line.closed, {}};
+        for (const Index c : line.crossings) out.points.push_back(network.point(c));
+        result_.lines.push_back(std::move(out));
+    }
+    for (const FieldUmbilic& u : field_.umbilics) {
+        const auto& f = mesh_.faces[u.face];
+        const Point3 place =
+            u.weights[0] * mesh_.points[f[0]] + u.weights[1] * mesh_.points[f[1]] + u.weights[2] * mesh_.points[f[2]];
+        result_.umbilics.push_back({place, mesh_.face_sources[u.face], u.half_turns});
+    }
+}
+
+void Remesher::finish() {
+    const CoarseMesh& coarse = best_->polygons;
+    RemeshStatistics& s = result_.statistics;
+    s.spacing_error = best_->error;
+    s.t_nodes = best_->counts.t_nodes;
+    const double polygons = static_cast<double>(std::max<std::size_t>(best_->counts.polygons, 1));
+    s.quad_share_with_t = static_cast<double>(best_->counts.quads_with_t) / polygons;
+    s.quad_share_without_t = static_cast<double>(best_->counts.quads_without_t) / polygons;
+    for (const BadRegion& bad : best_->bad)
+        s.notes.push_back("component " + std::to_string(bad.component + 1) + ": faces are not disks, by " +
+                          std::to_string(bad.euler_characteristic));
+    if (best_->counts.pinched > 0) s.notes.push_back(std::to_string(best_->counts.pinched) + " pinched polygons");
+    result_.mesh.positions = coarse.points;
+    for (const Index c : coarse.corners) result_.mesh.corners.push_back(VertexId{c});
+    result_.mesh.offsets = coarse.offsets;
+    for (const FeatureEdge& e : coarse.feature_edges) {
+        result_.feature_edges.push_back({VertexId{e.a}, VertexId{e.b}});
+        result_.feature_curves.push_back(e.curve);
+    }
+    s.vertices = coarse.points.size();
+    s.faces = coarse.polygon_count();
+    for (std::size_t i = 0; i < s.faces; ++i) {
+        s.quads += coarse.polygon(i).size() == 4 ? 1 : 0;
+        s.triangles += coarse.polygon(i).size() == 3 ? 1 : 0;
+    }
+    describe_lines();
+}
+
+RemeshResult Remesher::run() {
+    if (prepare()) search();
+    if (control_.cancelled() || !best_) {
+        result_.outcome = Outcome::cancelled;
+        return std::move(result_);
+    }
+    finish();
+    control_.report("done", 1.0);
+    return std::move(result_);
+}
+
+}  // namespace
+}  // namespace remeshing
+
+RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options, const RunControl& control) {
+    remeshing::check_options(options);
+    return remeshing::Remesher(mesh, options, control).run();
+}
+
+}  // namespace certa

@@ -1,0 +1,81 @@
+// Spacing of lines (thesis 4.2.1).
+//
+// Lines along the direction of k_max lie d(k_min) apart and the other way round (equation 4.6), with the isotropy rho
+// mixed in as in the thesis. Curvature at a point says nothing about a whole gap where it passes through zero: spacing
+// may grow only so fast away from where it is small, which one sweep of Dijkstra over the wedges' edges sees to.
+#include "remeshing/spacing.h"
+
+#include <algorithm>
+#include <queue>
+
+namespace certa::remeshing {
+namespace {
+
+void limit_growth(const WorkMesh& mesh, std::vector<double>& size, double growth) {
+    using Entry = std::pair<double, Index>;
+    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
+    for (Index w = 0; w < size.size(); ++w) queue.push({size[w], w});
+    while (!queue.empty()) {
+        const auto [value, w] = queue.top();
+        queue.pop();
+        if (value > size[w]) continue;
+        const auto relax = [&](Index other, Index edge) {
+            const double reached = value + growth * mesh.lengths[edge];
+            if (reached < size[other]) {
+                size[other] = reached;
+                queue.push({reached, other});
+            }
+        };
+        Index c = mesh.wedge_first[w];
+        const Index first = c;
+        do {
+            relax(mesh.wedges[next_of(c)], mesh.edges[c]);
+            relax(mesh.wedges[previous_of(c)], mesh.edges[previous_of(c)]);
+            c = mesh.next_corner(c);
+        } while (c != no_index && c != first);
+    }
+}
+
+}  // namespace
+
+double chord_of(double curvature, const SpacingRule& rule) {
+    const double k = std::abs(curvature);
+    const double floor = 0.5 * rule.error;
+    if (!(k > 0.0)) return rule.largest;
+    double chord = 0.0;
+    if (rule.transfer == 0.5) {
+        chord = k * rule.error >= 1.0 ? 2.0 / k : 2.0 * std::sqrt(rule.error * (2.0 / k - rule.error));
+    } else {
+        // Density |k|^P, such that curvature 1 / diagonal keeps its spacing.
+        const double unit = 1.0 / rule.largest;
+        chord = std::sqrt(8.0 * rule.error / unit) * std::pow(k / unit, -rule.transfer);
+    }
+    return std::clamp(chord, floor, rule.largest);
+}
+
+Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const SpacingRule& rule) {
+    Spacing spacing;
+    const double half = 0.5 * rule.isotropy;
+    for (auto& at : spacing.at) at.resize(mesh.wedge_count());
+    for (Index w = 0; w < mesh.wedge_count(); ++w) {
+        const double low = std::abs(field.k_min[w]), high = std::abs(field.k_max[w]);
+        spacing.at[along_max][w] = chord_of(half * high + (1.0 - half) * low, rule);
+        spacing.at[along_min][w] = chord_of(half * low + (1.0 - half) * high, rule);
+    }
+    for (auto& at : spacing.at) limit_growth(mesh, at, rule.growth);
+    return spacing;
+}
+
+double expected_vertices(const WorkMesh& mesh, const Spacing& spacing) {
+    double sum = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const double area = 0.5 * mesh.local(f, 1).real() * mesh.local(f, 2).imag();
+        for (Index i = 0; i < 3; ++i) {
+            const Index w = mesh.wedges[3 * f + i];
+            sum += area / 3.0 / (spacing.at[0][w] * spacing.at[1][w]);
+        }
+    }
+    return sum;
+}
+
+}  // namespace certa::remeshing

@@ -1,0 +1,332 @@
+// From triangles as they come to a surface with one side (remesh, stage 1; thesis 4.1.5 for what features do).
+//
+// Plan: drop what is no triangle, merge equal points; pair half-edges; turn faces alike, component by component; give
+// every fan of faces at a vertex a vertex of its own; then features, wedges between them, and intrinsic angles. Lengths
+// are enlarged by one global amount, far below the mean edge, until no triangle is flat (Sharp and Crane 2020): angles
+// and layouts exist then for whatever is in the file.
+#include "remeshing/work_mesh.h"
+
+#include <algorithm>
+#include <cstring>
+#include <numbers>
+#include <numeric>
+#include <unordered_map>
+
+#include "core/assert.h"
+#include "core/union_find.h"
+
+namespace certa::remeshing {
+namespace {
+
+[[noreturn]] void refuse(DefectKind kind, ElementKind element, std::size_t index, const Point3& place,
+                         const std::string& message) {
+    throw InputError({{kind, {{element, static_cast<std::uint32_t>(index)}}, place, message}});
+}
+
+void check_input(const TriangleMesh& mesh) {
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        const Point3& p = mesh.positions[v];
+        if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
+            refuse(DefectKind::non_finite_coordinate, ElementKind::vertex, v, {},
+                   "vertex " + std::to_string(v + 1) + " has a coordinate that is no finite number");
+    }
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
+        for (const VertexId v : mesh.triangles[t])
+            if (index_of(v) >= mesh.positions.size())
+                refuse(DefectKind::index_out_of_range, ElementKind::triangle, t, {},
+                       "triangle " + std::to_string(t + 1) + " names vertex " + std::to_string(index_of(v) + 1ULL) +
+                           " of " + std::to_string(mesh.positions.size()));
+    if (mesh.triangles.empty())
+        throw InputError({{DefectKind::empty_input, {}, {}, "there are no triangles: nothing to remesh"}});
+}
+
+/// Per input vertex: the first vertex with the same coordinates.
+std::vector<Index> merge_points(const std::vector<Point3>& points) {
+    std::vector<Index> order(points.size()), first(points.size());
+    std::iota(order.begin(), order.end(), 0U);
+    const auto key = [&](Index v) { return std::array{points[v].x, points[v].y, points[v].z}; };
+    std::sort(order.begin(), order.end(), [&](Index a, Index b) {
+        const auto ka = key(a), kb = key(b);
+        return ka != kb ? ka < kb : a < b;
+    });
+    for (std::size_t i = 0; i < order.size(); ++i)
+        first[order[i]] = i > 0 && key(order[i]) == key(order[i - 1]) ? first[order[i - 1]] : order[i];
+    return first;
+}
+
+/// Faces without repeated corners and without repetitions of each other.
+void take_faces(WorkMesh& work, const TriangleMesh& mesh, RemeshStatistics& statistics) {
+    const std::vector<Index> first = merge_points(mesh.positions);
+    std::vector<std::array<Index, 4>> sorted;
+    sorted.reserve(mesh.triangles.size());
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        std::array<Index, 3> f{};
+        for (std::size_t i = 0; i < 3; ++i) f[i] = first[index_of(mesh.triangles[t][i])];
+        if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) continue;
+        std::sort(f.begin(), f.end());
+        sorted.push_back({f[0], f[1], f[2], static_cast<Index>(t)});
+    }
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<Index> kept;
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+        if (i == 0 || !std::equal(sorted[i].begin(), sorted[i].begin() + 3, sorted[i - 1].begin()))
+            kept.push_back(sorted[i][3]);
+    std::sort(kept.begin(), kept.end());
+    statistics.degenerate_triangles = mesh.triangles.size() - kept.size();
+    if (kept.empty())
+        throw InputError({{DefectKind::empty_input, {}, {}, "every triangle names a vertex twice: nothing to remesh"}});
+    std::vector<Index> renamed(mesh.positions.size(), no_index);
+    for (const Index t : kept) {
+        std::array<Index, 3> f{};
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Index v = first[index_of(mesh.triangles[t][i])];
+            if (renamed[v] == no_index) {
+                renamed[v] = static_cast<Index>(work.points.size());
+                work.points.push_back(mesh.positions[v]);
+                work.point_sources.push_back(v);
+            }
+            f[i] = renamed[v];
+        }
+        work.faces.push_back(f);
+        work.face_sources.push_back(t);
+    }
+    statistics.unused_vertices = mesh.positions.size() - work.points.size();
+}
+
+/// Half-edges sorted by their ends: groups of more than one meet in an edge.
+struct Group {
+    std::uint64_t key;
+    Index halfedge;
+};
+std::vector<Group> group_halfedges(const WorkMesh& work) {
+    std::vector<Group> groups(3 * work.faces.size());
+    for (Index h = 0; h < groups.size(); ++h) {
+        const Index a = work.start_of(h), b = work.end_of(h);
+        groups[h] = {(static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b), h};
+    }
+    std::sort(groups.begin(), groups.end(),
+              [](const Group& a, const Group& b) { return a.key != b.key ? a.key < b.key : a.halfedge < b.halfedge; });
+    return groups;
+}
+
+/// Two half-edges per edge are opposite; edges of more faces stay open. Returns how many of those there are.
+std::size_t pair_halfedges(WorkMesh& work) {
+    const std::vector<Group> groups = group_halfedges(work);
+    work.opposites.assign(groups.size(), no_index);
+    std::size_t crowded = 0;
+    for (std::size_t i = 0; i < groups.size();) {
+        std::size_t end = i + 1;
+        while (end < groups.size() && groups[end].key == groups[i].key) ++end;
+        if (end - i == 2) {
+            work.opposites[groups[i].halfedge] = groups[i + 1].halfedge;
+            work.opposites[groups[i + 1].halfedge] = groups[i].halfedge;
+        } else if (end - i > 2) {
+            ++crowded;
+        }
+        i = end;
+    }
+    return crowded;
+}
+
+/// Turns faces so that neighbours agree; of each component the fewer are turned.
+void orient(WorkMesh& work, RemeshStatistics& statistics) {
+    const Index count = work.face_count();
+    std::vector<signed char> turned(count, -1);
+    std::vector<Index> queue;
+    for (Index seed = 0; seed < count; ++seed) {
+        if (turned[seed] >= 0) continue;
+        queue.assign(1, seed);
+        turned[seed] = 0;
+        std::size_t flips = 0;
+        for (std::size_t at = 0; at < queue.size(); ++at) {
+            const Index f = queue[at];
+            for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+                const Index o = work.opposites[h];
+                if (o == no_index) continue;
+                const signed char alike = work.start_of(h) == work.end_of(o) ? turned[f] : 1 - turned[f];
+                if (turned[o / 3] < 0) {
+                    turned[o / 3] = alike;
+                    flips += alike;
+                    queue.push_back(o / 3);
+                } else if (turned[o / 3] != alike) {
+                    const Index t = work.face_sources[f], u = work.face_sources[o / 3];
+                    throw InputError(
+                        {{DefectKind::open_facet,
+                          {{ElementKind::triangle, t}, {ElementKind::triangle, u}},
+                          work.points[work.start_of(h)],
+                          "the surface has one side only: no orientation fits triangles " + std::to_string(t + 1ULL) +
+                              " and " + std::to_string(u + 1ULL) + "; cut it open along a line"}});
+                }
+            }
+        }
+        const bool invert = 2 * flips > queue.size();
+        statistics.flipped_triangles += invert ? queue.size() - flips : flips;
+        if (invert)
+            for (const Index f : queue) turned[f] = 1 - turned[f];
+    }
+    for (Index f = 0; f < count; ++f)
+        if (turned[f] == 1) std::swap(work.faces[f][1], work.faces[f][2]);
+}
+
+/// One vertex per fan of faces.
+void split_vertices(WorkMesh& work, RemeshStatistics& statistics) {
+    const Index corners = 3 * work.face_count();
+    std::vector<bool> seen(corners, false), used(work.points.size(), false);
+    std::vector<Index> fan;
+    for (Index c = 0; c < corners; ++c) {
+        if (seen[c]) continue;
+        fan.assign(1, c);
+        seen[c] = true;
+        for (std::size_t at = 0; at < fan.size(); ++at) {
+            const Index left = work.opposites[previous_of(fan[at])];
+            const Index over = work.opposites[fan[at]];
+            const Index right = over == no_index ? no_index : next_of(over);
+            for (const Index n : {left, right}) {
+                if (n == no_index || seen[n]) continue;
+                seen[n] = true;
+                fan.push_back(n);
+            }
+        }
+        const Index v = work.start_of(c);
+        if (!used[v]) {
+            used[v] = true;
+            continue;
+        }
+        ++statistics.split_vertices;
+        const Index copy = static_cast<Index>(work.points.size());
+        work.points.push_back(Point3(work.points[v]));
+        work.point_sources.push_back(work.point_sources[v]);
+        for (const Index n : fan) work.faces[n / 3][n % 3] = copy;
+    }
+}
+
+void number_edges(WorkMesh& work) {
+    work.edges.assign(work.opposites.size(), no_index);
+    for (Index h = 0; h < work.opposites.size(); ++h) {
+        if (work.edges[h] != no_index) continue;
+        work.edges[h] = static_cast<Index>(work.edge_halfedges.size());
+        if (work.opposites[h] != no_index) work.edges[work.opposites[h]] = work.edges[h];
+        work.edge_halfedges.push_back(h);
+    }
+}
+
+void find_components(WorkMesh& work) {
+    core::UnionFind sets(work.faces.size());
+    for (Index h = 0; h < work.opposites.size(); ++h)
+        if (work.opposites[h] != no_index) sets.unite(h / 3, work.opposites[h] / 3);
+    work.components.resize(work.faces.size());
+    std::vector<Index> numbers(work.faces.size(), no_index);
+    for (Index f = 0; f < work.face_count(); ++f) {
+        Index& number = numbers[sets.find(f)];
+        if (number == no_index) number = work.component_count++;
+        work.components[f] = number;
+    }
+}
+
+/// Lengths, enlarged until the flattest triangle has a little height, and layouts.
+void lay_out(WorkMesh& work) {
+    work.lengths.resize(work.edge_halfedges.size());
+    double sum = 0.0;
+    for (std::size_t e = 0; e < work.lengths.size(); ++e) {
+        const Index h = work.edge_halfedges[e];
+        work.lengths[e] = distance(work.points[work.start_of(h)], work.points[work.end_of(h)]);
+        sum += work.lengths[e];
+    }
+    work.mean_edge = sum / static_cast<double>(work.lengths.size());
+    double slack = work.mean_edge;
+    const auto side = [&](Index f, Index i) { return work.lengths[work.edges[3 * f + i]]; };
+    for (Index f = 0; f < work.face_count(); ++f) {
+        const double a = side(f, 0), b = side(f, 1), c = side(f, 2);
+        slack = std::min({slack, a + b - c, b + c - a, c + a - b});
+    }
+    const double wanted = 1e-6 * work.mean_edge;
+    if (slack < wanted)
+        for (double& length : work.lengths) length += wanted - slack;
+    work.apex.resize(work.faces.size());
+    for (Index f = 0; f < work.face_count(); ++f) {
+        const double a = side(f, 0), b = side(f, 1), c = side(f, 2);
+        const double x = (a * a + (c - b) * (c + b)) / (2.0 * a);
+        const double s = 0.5 * (a + b + c);
+        const double area = std::sqrt(std::max(s * (s - a) * (s - b) * (s - c), 0.0));
+        work.apex[f] = {x, std::max(2.0 * area / a, 1e-9 * a)};
+    }
+}
+
+}  // namespace
+
+void build_wedges(WorkMesh& work) {
+    const Index corners = 3 * work.face_count();
+    work.wedges.assign(corners, no_index);
+    work.corner_start.resize(corners);
+    work.corner_angle.resize(corners);
+    work.wedge_vertices.clear();
+    work.wedge_first.clear();
+    work.wedge_closed.clear();
+    for (Index c = 0; c < corners; ++c) {
+        if (work.wedges[c] != no_index) continue;
+        // Clockwise to the first corner behind a feature, or once around.
+        Index first = c;
+        bool closed = false;
+        while (!work.is_feature(first)) {
+            first = next_of(work.opposites[first]);
+            if (first == c) {
+                closed = true;
+                break;
+            }
+        }
+        const Index wedge = work.wedge_count();
+        work.wedge_vertices.push_back(work.start_of(c));
+        work.wedge_first.push_back(first);
+        work.wedge_closed.push_back(closed);
+        double total = 0.0;
+        Index at = first;
+        do {
+            const Index f = at / 3, i = at % 3;
+            const Complex o = work.local(f, i), p = work.local(f, (i + 1) % 3), q = work.local(f, (i + 2) % 3);
+            work.wedges[at] = wedge;
+            work.corner_start[at] = total;
+            work.corner_angle[at] = std::arg((q - o) * std::conj(p - o));
+            total += work.corner_angle[at];
+            at = work.next_corner(at);
+        } while (at != no_index && at != first);
+        if (!closed) continue;
+        const double scale = 2.0 * std::numbers::pi / total;
+        at = first;
+        do {
+            work.corner_start[at] *= scale;
+            work.corner_angle[at] *= scale;
+            at = work.next_corner(at);
+        } while (at != first);
+    }
+}
+
+WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
+    check_input(mesh);
+    WorkMesh work;
+    statistics.input_vertices = mesh.positions.size();
+    statistics.input_triangles = mesh.triangles.size();
+    take_faces(work, mesh, statistics);
+    statistics.non_manifold_edges = pair_halfedges(work);
+    orient(work, statistics);
+    pair_halfedges(work);
+    split_vertices(work, statistics);
+    number_edges(work);
+    find_components(work);
+    lay_out(work);
+    Point3 low = work.points[0], high = low;
+    for (const Point3& p : work.points) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    work.diagonal = distance(low, high);
+    work.euler_characteristic = static_cast<std::int64_t>(work.points.size()) -
+                                static_cast<std::int64_t>(work.lengths.size()) +
+                                static_cast<std::int64_t>(work.faces.size());
+    statistics.components = work.component_count;
+    statistics.euler_characteristic = work.euler_characteristic;
+    find_features(work, options, statistics);
+    build_wedges(work);
+    return work;
+}
+
+}  // namespace certa::remeshing
