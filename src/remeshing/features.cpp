@@ -72,11 +72,43 @@ void forget_noise(const WorkMesh& mesh, std::vector<Mark>& marks) {
         length[group] += mesh.lengths[e];
         if (marks[e] != Mark::angle) held[group] = true;
     }
-    const double least = std::min(0.03 * mesh.diagonal, 12.0 * mesh.mean_edge);
+    const double least = 0.12 * mesh.diagonal;
     for (std::size_t e = 0; e < marks.size(); ++e) {
         if (marks[e] != Mark::angle) continue;
         const Index group = sets.find(mesh.start_of(mesh.edge_halfedges[e]));
         if (!held[group] && length[group] < least) marks[e] = Mark::none;
+    }
+}
+
+/// Short chains by angle that end in nothing.
+void forget_whiskers(const WorkMesh& mesh, std::vector<Mark>& marks) {
+    std::vector<std::vector<Index>> incident(mesh.points.size());
+    for (Index e = 0; e < marks.size(); ++e) {
+        if (marks[e] == Mark::none) continue;
+        incident[mesh.start_of(mesh.edge_halfedges[e])].push_back(e);
+        incident[mesh.end_of(mesh.edge_halfedges[e])].push_back(e);
+    }
+    const double least = 0.04 * mesh.diagonal;
+    for (Index tip = 0; tip < mesh.points.size(); ++tip) {
+        if (incident[tip].size() != 1) continue;
+        std::vector<Index> chain;
+        double length = 0.0;
+        Index v = tip, edge = incident[tip].front();
+        while (marks[edge] == Mark::angle) {
+            chain.push_back(edge);
+            length += mesh.lengths[edge];
+            const Index h = mesh.edge_halfedges[edge];
+            v = mesh.start_of(h) == v ? mesh.end_of(h) : mesh.start_of(h);
+            if (incident[v].size() != 2) break;
+            edge = incident[v][0] == edge ? incident[v][1] : incident[v][0];
+        }
+        if (length >= least || chain.empty() || marks[edge] != Mark::angle) continue;
+        for (const Index e : chain) {
+            marks[e] = Mark::none;
+            const Index h = mesh.edge_halfedges[e];
+            std::erase(incident[mesh.start_of(h)], e);
+            std::erase(incident[mesh.end_of(h)], e);
+        }
     }
 }
 
@@ -153,6 +185,7 @@ private:
 
 void find_features(WorkMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
     std::vector<Mark> marks = mark_edges(mesh, options);
+    forget_whiskers(mesh, marks);
     forget_noise(mesh, marks);
     CurveBuilder(mesh, marks).build();
     statistics.feature_curves = mesh.curves.size();

@@ -10,7 +10,11 @@
 #include <cmath>
 
 #include "core/assert.h"
+#include "core/triangle_tree.h"
+#include "remeshing/placement.h"
 #include "remeshing/polygons.h"
+#include "remeshing/subdivision.h"
+#include "remeshing/templates.h"
 #include "remeshing/trace_lines.h"
 
 namespace certa {
@@ -70,6 +74,8 @@ public:
           control_(control),
           watch_(result_.statistics),
           mesh_(build_work_mesh(mesh, options, result_.statistics)) {
+        input_.positions = mesh_.points;
+        for (const auto& f : mesh_.faces) input_.triangles.push_back({VertexId{f[0]}, VertexId{f[1]}, VertexId{f[2]}});
         watch_.stage("input");
     }
 
@@ -83,13 +89,17 @@ private:
     double count_of(const Draft& draft) const;
     void search();
     void finish();
+    void place(CoarseMesh& mesh);
+    CoarseMesh cut(const CoarseMesh& polygons);
     void describe_lines();
+    void describe_polygons();
 
     const RemeshOptions& options_;
     const RunControl& control_;
     RemeshResult result_;
     Stopwatch watch_;
     WorkMesh mesh_;
+    TriangleMesh input_;  ///< the work mesh
     DirectionField field_;
     std::optional<Draft> best_;
 };
@@ -150,7 +160,11 @@ Draft Remesher::draft(double error) {
 }
 
 double Remesher::count_of(const Draft& draft) const {
-    return static_cast<double>(options_.faces ? draft.polygons.polygon_count() : draft.polygons.points.size());
+    if (!options_.faces) return static_cast<double>(draft.polygons.points.size());
+    // Cutting into quads and triangles adds faces.
+    return static_cast<double>(options_.output == RemeshOutput::polygons
+                                   ? draft.polygons.polygon_count()
+                                   : make_quad_dominant(draft.polygons).polygon_count());
 }
 
 void Remesher::search() {
@@ -192,8 +206,33 @@ void Remesher::describe_lines() {
     }
 }
 
-void Remesher::finish() {
-    const CoarseMesh& coarse = best_->polygons;
+/// Vertices of the input's own curves, for placement along them.
+void Remesher::place(CoarseMesh& mesh) {
+    if (!options_.placement) return;
+    std::vector<FeatureEdge> features;
+    for (Index e = 0; e < mesh_.edge_curves.size(); ++e) {
+        const Index h = mesh_.edge_halfedges[e];
+        if (mesh_.edge_curves[e] != no_index)
+            features.push_back({mesh_.start_of(h), mesh_.end_of(h), mesh_.edge_curves[e]});
+    }
+    control_.report("placement", 0.9);
+    place_vertices(input_, features, mesh, {}, control_);
+    watch_.stage("placement");
+}
+
+CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
+    switch (options_.output) {
+        case RemeshOutput::polygons:
+            return options_.max_degree > 0 ? limit_degree(polygons, options_.max_degree) : polygons;
+        case RemeshOutput::quad_dominant:
+            return make_quad_dominant(polygons);
+        case RemeshOutput::triangles:
+            return make_triangles(polygons, core::TriangleTree(input_.positions, input_.triangles));
+    }
+    return polygons;
+}
+
+void Remesher::describe_polygons() {
     RemeshStatistics& s = result_.statistics;
     s.spacing_error = best_->error;
     s.t_nodes = best_->counts.t_nodes;
@@ -204,6 +243,22 @@ void Remesher::finish() {
         s.notes.push_back("component " + std::to_string(bad.component + 1) + ": faces are not disks, by " +
                           std::to_string(bad.euler_characteristic));
     if (best_->counts.pinched > 0) s.notes.push_back(std::to_string(best_->counts.pinched) + " pinched polygons");
+}
+
+void Remesher::finish() {
+    describe_polygons();
+    CoarseMesh coarse = cut(best_->polygons);
+    watch_.stage("outputs");
+    if (options_.output == RemeshOutput::polygons && options_.placement) {
+        // Placed as quads and triangles, which say how the polygons are filled.
+        CoarseMesh filled = make_quad_dominant(coarse);
+        place(filled);
+        coarse.points = filled.points;
+        coarse.places = filled.places;
+    } else {
+        place(coarse);
+    }
+    for (std::uint64_t round = 0; round < options_.subdivide; ++round) coarse = subdivide(coarse);
     result_.mesh.positions = coarse.points;
     for (const Index c : coarse.corners) result_.mesh.corners.push_back(VertexId{c});
     result_.mesh.offsets = coarse.offsets;
@@ -211,6 +266,7 @@ void Remesher::finish() {
         result_.feature_edges.push_back({VertexId{e.a}, VertexId{e.b}});
         result_.feature_curves.push_back(e.curve);
     }
+    RemeshStatistics& s = result_.statistics;
     s.vertices = coarse.points.size();
     s.faces = coarse.polygon_count();
     for (std::size_t i = 0; i < s.faces; ++i) {
