@@ -137,6 +137,9 @@ struct ImplicitOptions {
     std::optional<std::uint64_t> max_cells = 4'000'000;
     std::optional<std::uint64_t> max_depth = std::nullopt;  ///< automatic: as deep as doubles carry, at most 29
     bool certificate = false;                               ///< write ImplicitResult::certificate
+    /// The mesh is refined and simplified to this distance from the zero set, as sampled; closed surfaces only. Without
+    /// it: the raw mesh of the triangulation, as fine as the proof needs it and no finer.
+    std::optional<double> error = std::nullopt;
     /// The surface may meet the box: what lies in the box is meshed, with loops in the box's boundary. Components,
     /// genera and loops are certified then (docs/implicit-theorem.md), isotopy is not claimed.
     bool clip = false;
@@ -190,6 +193,7 @@ struct ImplicitCheck {
     std::size_t violation_count = 0;
     ImplicitVerdict verdict = ImplicitVerdict::undecided;  ///< proved by the check: certified, empty; else undecided
     std::vector<int> genera;                               ///< per component of the mesh, sorted
+    std::vector<int> loops;  ///< of a clipped surface, in the order of genera: boundary loops
     std::size_t leaves_checked = 0, marks_checked = 0, triangles_checked = 0;
     bool ok() const { return violation_count == 0; }
 };

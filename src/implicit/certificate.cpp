@@ -90,11 +90,16 @@ std::string write_certificate(const Expression& function, const Octree& tree, co
         append_point(tree.points()[a], text);
         append_point(tree.points()[b], text);
     }
-    text += "],\n\"genera\":[";
-    std::vector<int> genera;
-    for (const ImplicitComponent& component : components) genera.push_back(component.genus);
-    std::sort(genera.begin(), genera.end());
-    for (const int genus : genera) append_number(genus, text);
+    text += "],\n";
+    std::vector<std::pair<int, int>> forms;
+    for (const ImplicitComponent& component : components) forms.emplace_back(component.genus, component.loops);
+    std::sort(forms.begin(), forms.end());
+    text += "\"genera\":[";
+    for (const auto& [genus, loops] : forms) append_number(genus, text);
+    if (tree.is_clipped()) {
+        text += "],\n\"loops\":[";
+        for (const auto& [genus, loops] : forms) append_number(loops, text);
+    }
     return text + "]}\n";
 }
 

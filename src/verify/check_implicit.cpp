@@ -7,12 +7,14 @@
 #include <certa/implicit_mesh.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <mutex>
 #include <numeric>
 #include <set>
 
 #include "core/parallel.h"
+#include "verify/implicit_clip.h"
 #include "verify/implicit_complex.h"
 #include "verify/implicit_function.h"
 #include "verify/implicit_mesh.h"
@@ -96,8 +98,11 @@ private:
         const Lattice high{leaf.low[0] + leaf.size, leaf.low[1] + leaf.size, leaf.low[2] + leaf.size};
         const BoxOfDoubles box = c_.box(leaf.low, high);
         if (leaf.sign == 0 && leaf.slope == 0) return show_leaf(leaf) + " claims nothing";
-        if (leaf.sign == 0 && (c_.on_boundary(leaf.low) || c_.on_boundary(high)))
+        const unsigned touched = c_.box_faces(leaf.low) | c_.box_faces(high);
+        if (leaf.sign == 0 && touched != 0 && !c_.is_clipped())
             return show_leaf(leaf) + " touches the box and claims no sign";
+        if (c_.is_clipped() && leaf.slope != 0 && ((touched >> (2 * leaf.axis)) & 3u) != 0)
+            return show_leaf(leaf) + " claims a slope across a face of the box that it touches";
         if (leaf.sign != 0 && !enclosures.proves_sign(box, leaf.sign))
             return "the sign of f is not proved on " + show_leaf(leaf);
         if (leaf.slope != 0 && !enclosures.proves_slope(box, leaf.axis, leaf.slope))
@@ -129,7 +134,8 @@ private:
 
     /// The link of p falls into points of the other sign or marked, and the rest: each must be non-empty and connected.
     bool may_join(std::uint32_t p) {
-        if (c_.on_boundary(c_.points()[p])) return false;
+        const unsigned faces = c_.box_faces(c_.points()[p]);
+        if (faces != 0 && !c_.is_clipped()) return false;
         std::map<std::uint32_t, std::vector<std::uint32_t>> neighbours;
         for (std::uint32_t k = star_first_[p]; k < star_first_[p + 1]; ++k) {
             if (c_.leaves()[c_.leaf_of_tet()[star_[k]]].is_critical()) return false;
@@ -140,7 +146,13 @@ private:
                 }
             }
         }
-        const auto inside = [&](std::uint32_t a) { return c_.sign[a] != c_.sign[p] || marked_[a] != 0; };
+        // On the boundary of a box that clips, the link is a disk; a point that is not inside is joined to its rim.
+        const auto inside = [&](std::uint32_t a) {
+            return a != ImplicitComplex::no_point && (c_.sign[a] != c_.sign[p] || marked_[a] != 0);
+        };
+        if (faces != 0 &&
+            !close_rim(c_, p, {star_.data() + star_first_[p], star_.data() + star_first_[p + 1]}, inside, neighbours))
+            return false;
         int parts[2] = {0, 0};
         std::set<std::uint32_t> seen;
         for (const auto& [start, around] : neighbours) {
@@ -221,25 +233,21 @@ private:
             if (!c_.leaves()[c_.leaf_of_tet()[i]].is_critical()) continue;
             for (const std::uint32_t p : c_.tets()[i]) clusters.join(p, c_.tets()[i][0]);
         }
-        std::map<std::uint32_t, std::vector<Triangle3>> boundaries;  // per cluster
+        std::map<std::uint32_t, std::vector<SlopeTriangle>> boundaries;  // per cluster
         collect_boundaries(clusters, boundaries);
         find_regions();
         std::map<std::uint32_t, long> degree_of_region;
         for (const auto& [cluster, triangles] : boundaries) {
             const std::uint32_t region = regions_->of(cluster);
-            if (region != outside_) degree_of_region[region] += degree_of(triangles);
+            if (c_.is_clipped())
+                degree_of_region[region] += degree_of(unfolded(c_, triangles));
+            else if (region != outside_)
+                degree_of_region[region] += 8 * degree_of(triangles);
         }
         balance(degree_of_region);
     }
 
-    /// A triangle of T between a critical and a regular leaf, counter-clockwise seen from the regular side, with what
-    /// the regular leaf claims of the derivatives there.
-    struct Triangle3 {
-        std::array<std::uint32_t, 3> corners;
-        int axis, slope;
-    };
-
-    void collect_boundaries(Parts& clusters, std::map<std::uint32_t, std::vector<Triangle3>>& boundaries) {
+    void collect_boundaries(Parts& clusters, std::map<std::uint32_t, std::vector<SlopeTriangle>>& boundaries) {
         // Each tetrahedron has one triangle on the surface of its leaf: the one without the leaf's centre.
         std::map<std::array<std::uint32_t, 3>, std::uint32_t> critical;
         for (std::uint32_t i = 0; i < c_.tets().size(); ++i) {
@@ -263,13 +271,13 @@ private:
 
     /// The degree by the preimages of -z: triangles with slope (z, -) make P; on its boundary, crossings of x > 0 make
     /// A; ends of A with y > 0 count. The orientation around -z is the opposite of that around +z, hence the sign.
-    long degree_of(const std::vector<Triangle3>& triangles) {
+    long degree_of(const std::vector<SlopeTriangle>& triangles) {
         struct Edge {
             long times = 0;
             int x = 0, y = 0;
         };
         std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
-        for (const Triangle3& t : triangles) {
+        for (const SlopeTriangle& t : triangles) {
             for (std::size_t i = 0; i < 3; ++i) {
                 const std::uint32_t a = t.corners[i], b = t.corners[(i + 1) % 3];
                 Edge& edge = edges[{std::min(a, b), std::max(a, b)}];
@@ -317,8 +325,14 @@ private:
     }
 
     struct Component {
-        long edges = 0, half_triangles = 0, tets = 0;
+        long euler8 = 0;  ///< of eight copies of the surface, reflected at the faces of the box
+        long tets = 0, edge_points = 0, loops = 0;
         std::set<std::uint32_t> regions;
+        /// Points in faces of the box are in half as many copies, those on edges in a quarter; loops have as many
+        /// points on edges as open arcs between them.
+        long euler() const { return (euler8 + 2 * edge_points) / 8; }
+        long genus() const { return (2 - loops - euler()) / 2; }
+        bool is_integral() const { return (euler8 + 2 * edge_points) % 8 == 0 && (loops + euler()) % 2 == 0; }
     };
 
     void balance(std::map<std::uint32_t, long>& degree_of_region) {
@@ -334,7 +348,15 @@ private:
             }
             note(t, components, mixed_edges);
         }
-        for (const auto& [a, b] : mixed_edges) ++components.at(regions_->of(a)).edges;
+        for (const auto& [a, b] : mixed_edges) {
+            const auto faces =
+                c_.is_clipped() ? std::popcount(c_.box_faces(c_.points()[a]) & c_.box_faces(c_.points()[b])) : 0;
+            components.at(regions_->of(a)).euler8 += 8 >> faces;
+            components.at(regions_->of(a)).edge_points += faces == 2 ? 1 : 0;
+        }
+        if (c_.is_clipped()) {
+            for (const std::uint32_t p : loops_in_box_faces(c_)) ++components.at(regions_->of(p)).loops;
+        }
         std::set<std::uint32_t> done;
         for (auto& [id, component] : components) {
             if (component.regions.size() != 2 || component.tets == 0) {
@@ -344,7 +366,11 @@ private:
         }
         inwards(outside_, ImplicitComplex::no_point, components, degree_of_region, sign_of_region, done);
         if (done.size() != components.size()) add("a component of W is not reached from the outside");
-        std::sort(result_.genera.begin(), result_.genera.end());
+        std::sort(forms_.begin(), forms_.end());
+        for (const auto& [genus, loops] : forms_) {
+            result_.genera.push_back(genus);
+            if (c_.is_clipped()) result_.loops.push_back(loops);
+        }
     }
 
     void note(const Tet& t, std::map<std::uint32_t, Component>& components,
@@ -359,7 +385,7 @@ private:
             components[component].regions.insert(region);
         if (positive == 0 || positive == 4) return;
         ++components[component].tets;
-        components[component].half_triangles += positive == 2 ? 4 : 3;
+        components[component].euler8 += 8 - 4 * (positive == 2 ? 4 : 3);
         for (std::size_t i = 0; i < 4; ++i) {
             for (std::size_t j = i + 1; j < 4; ++j) {
                 if (c_.sign[t[i]] != c_.sign[t[j]]) mixed_edges.insert(std::minmax(t[i], t[j]));
@@ -381,12 +407,12 @@ private:
             const std::uint32_t inner =
                 *component.regions.begin() == region ? *component.regions.rbegin() : *component.regions.begin();
             const long inside = inwards(inner, id, components, degree_of_region, sign_of_region, done);
-            const long euler = component.edges - component.half_triangles / 2 + component.tets;
-            if (2 * inside != -sign_of_region.at(inner) * euler)
-                add("the degree " + std::to_string(inside) + " does not match the Euler characteristic " +
-                    std::to_string(euler) + ", at " + show_point(id));
-            result_.genera.push_back(static_cast<int>(1 - euler / 2));
-            verified_.push_back({id, result_.genera.back(), sign_of_region.at(inner), inner, region, around});
+            if (2 * inside != -sign_of_region.at(inner) * component.euler8 || !component.is_integral())
+                add("the degree " + std::to_string(inside) + "/8 does not match the Euler characteristic " +
+                    std::to_string(component.euler8) + "/8, at " + show_point(id));
+            forms_.emplace_back(component.genus(), component.loops);
+            verified_.push_back(
+                {id, static_cast<int>(component.genus()), sign_of_region.at(inner), inner, region, around});
             degree += inside;
         }
         return degree;
@@ -401,6 +427,7 @@ private:
     std::unique_ptr<Parts> regions_;
     std::uint32_t outside_ = 0;
     std::vector<VerifiedComponent> verified_;
+    std::vector<std::pair<int, int>> forms_;  ///< genus and loops of each component
 };
 
 void add_to(ImplicitCheck& result, std::string problem) {
@@ -418,11 +445,16 @@ MeshFindings check(const TriangleMesh& mesh, std::string_view text, std::string_
     Check check(function, complex, control, result);
     check.run();
     const std::vector<std::int64_t> genera(result.genera.begin(), result.genera.end());
-    if (result.violation_count == 0 && genera != certificate.genera)
+    const std::vector<std::int64_t> loops(result.loops.begin(), result.loops.end());
+    if (result.violation_count == 0 && (genera != certificate.genera || loops != certificate.loops))
         add_to(result, "the certificate names other genera");
     result.triangles_checked = mesh.triangles.size();
     if (any || (certificate.vertex_edges.empty() && !mesh.triangles.empty())) {
         if (result.violation_count != 0) return {};
+        if (certificate.clip) {
+            add_to(result, "the certificate of a clipped surface is for the mesh that it names the vertices of");
+            return {};
+        }
         return judge_mesh(mesh, complex, check.verified(), control);
     }
     for (std::string& problem : check_mesh_on_complex(mesh, complex, certificate)) add_to(result, std::move(problem));
@@ -459,8 +491,10 @@ ImplicitCheck check_implicit(const TriangleMesh& mesh, std::string_view function
     });
     if (result.ok())
         result.verdict = result.genera.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
-    else
+    else {
         result.genera.clear();
+        result.loops.clear();
+    }
     return result;
 }
 

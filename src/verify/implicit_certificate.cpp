@@ -16,8 +16,8 @@ public:
 
     using Keys = std::map<std::string, std::function<void()>, std::less<>>;
 
-    /// {"key": value, ...} with exactly the given keys, in any order.
-    void object(const Keys& keys) {
+    /// {"key": value, ...} with exactly the given keys, in any order; `optional` may be missing.
+    void object(const Keys& keys, std::string_view optional = {}) {
         expect('{');
         std::set<std::string> seen;
         do {
@@ -30,7 +30,7 @@ public:
         } while (accept(','));
         expect('}');
         for (const auto& [key, read] : keys) {
-            if (seen.count(key) == 0) fail("the key " + key + " is missing");
+            if (seen.count(key) == 0 && key != optional) fail("the key " + key + " is missing");
         }
     }
 
@@ -131,7 +131,13 @@ ImplicitCertificate read_certificate(std::string_view text) {
                {"negative_points", [&] { c.negative_points = in.integers(); }},
                {"marks", [&] { c.marks = in.integers(); }},
                {"vertex_edges", [&] { c.vertex_edges = in.integers(); }},
-               {"genera", [&] { c.genera = in.integers(); }}});
+               {"loops",
+                [&] {
+                    c.clip = true;
+                    c.loops = in.integers();
+                }},
+               {"genera", [&] { c.genera = in.integers(); }}},
+              "loops");
     in.end();
     return c;
 }

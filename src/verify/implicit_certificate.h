@@ -20,10 +20,12 @@ struct ImplicitCertificate {
     std::array<std::int64_t, 3> first{}, count{}, exponent{};
     std::int64_t resolution = 0;
     std::vector<std::int64_t> negative_points, marks, vertex_edges, genera;
+    bool clip = false;                ///< the surface may meet the box
+    std::vector<std::int64_t> loops;  ///< per component, in the order of genera; of a clipped surface only
 };
 
 /// Reads the JSON of docs/formats.md: an object of strings, integers, arrays of integers and one object of such.
-/// Errors: UnreadableCertificate, also for keys that are missing, unknown or given twice.
+/// Errors: UnreadableCertificate, also for keys that are missing, unknown or given twice. `loops` makes a clipped one.
 ImplicitCertificate read_certificate(std::string_view text);
 
 }  // namespace certa::verify

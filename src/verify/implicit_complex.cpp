@@ -16,7 +16,10 @@ constexpr std::uint32_t leaf_bit = 0x80000000u;
 }  // namespace
 
 ImplicitComplex::ImplicitComplex(const ImplicitCertificate& certificate)
-    : first_(certificate.first), count_(certificate.count), exponent_(certificate.exponent) {
+    : first_(certificate.first),
+      count_(certificate.count),
+      exponent_(certificate.exponent),
+      clipped_(certificate.clip) {
     if (certificate.resolution < 2 || certificate.resolution > 30) refuse("the resolution must be from 2 to 30");
     resolution_ = static_cast<int>(certificate.resolution);
     for (std::size_t a = 0; a < 3; ++a) {
@@ -54,6 +57,15 @@ BoxOfDoubles ImplicitComplex::box(const Lattice& low, const Lattice& high) const
 
 bool ImplicitComplex::on_boundary(const Lattice& p) const {
     return std::any_of(p.begin(), p.end(), [&](std::uint32_t c) { return c == 0 || c == side(); });
+}
+
+unsigned ImplicitComplex::box_faces(const Lattice& p) const {
+    unsigned faces = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+        if (p[a] == 0) faces |= 1u << (2 * a);
+        if (p[a] == side()) faces |= 2u << (2 * a);
+    }
+    return faces;
 }
 
 void ImplicitComplex::read_octree(const std::string& code) {

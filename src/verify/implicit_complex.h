@@ -41,6 +41,9 @@ public:
     std::array<double, 3> place(std::uint32_t point) const;
     std::uint32_t side() const { return std::uint32_t{1} << resolution_; }
     bool on_boundary(const Lattice& p) const;
+    bool is_clipped() const { return clipped_; }
+    /// Faces of the box that hold a point, a bit each: low x, high x, low y, ...
+    unsigned box_faces(const Lattice& p) const;
 
     using Tet = std::array<std::uint32_t, 4>;
     const std::vector<Tet>& tets() const { return tets_; }
@@ -73,6 +76,7 @@ private:
 
     std::array<std::int64_t, 3> first_, count_, exponent_;
     int resolution_ = 0;
+    bool clipped_ = false;
     std::vector<ClaimedLeaf> leaves_;
     std::vector<std::uint32_t> nodes_;  ///< preorder: first child's node, or leaf number with the top bit
     std::unordered_map<Lattice, char, LatticeHash> corners_;

@@ -48,7 +48,7 @@ TEST_F(Conditions, HoldForTheTorus) {
     const Findings found = check();
     EXPECT_EQ(found.condition, nullptr);
     ASSERT_EQ(found.components.size(), 1u);
-    EXPECT_EQ(found.components[0].euler, 0);
+    EXPECT_EQ(found.components[0].euler(), 0);
     EXPECT_EQ(found.components[0].degree8, 0);
     EXPECT_EQ(found.components[0].inner_sign, -1);
 }
