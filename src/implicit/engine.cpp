@@ -10,8 +10,10 @@
 #include "implicit/certificate.h"
 #include "implicit/clusters.h"
 #include "implicit/conditions.h"
+#include "implicit/frontier.h"
 #include "implicit/growth.h"
 #include "implicit/refine.h"
+#include "implicit/simplify.h"
 #include "implicit/surface.h"
 #include "interval/environment.h"
 
@@ -27,7 +29,8 @@ public:
           tree_(grid, options.clip),
           field_(tape_),
           control_(control),
-          certificate_(options.certificate) {
+          certificate_(options.certificate),
+          error_(options.error) {
         limits_.max_cells = options.max_cells.value_or(std::uint64_t{1} << 31);
         const auto deepest = static_cast<std::uint64_t>(tree_.max_depth());
         limits_.max_depth = static_cast<int>(std::min(options.max_depth.value_or(deepest), deepest));
@@ -107,6 +110,10 @@ private:
             result_.components.back().degree = component.degree8 / 8;
             if (component.parent != none) result_.components.back().parent = component.parent;
         }
+        if (error_ && !tree_.is_clipped() && result_.verdict == ImplicitVerdict::certified) {
+            const Frontier frontier(tree_, triangulation, growth);
+            surface = simplify(surface, &frontier, tape_, {*error_}, control_);
+        }
         if (certificate_)
             result_.certificate =
                 write_certificate(function_, tree_, triangulation, growth, surface, result_.components);
@@ -120,6 +127,7 @@ private:
     Field field_;
     const RunControl& control_;
     bool certificate_;
+    std::optional<double> error_;
     Limits limits_;
     std::vector<Triangulation::PointSign> signs_;
     ImplicitResult result_;

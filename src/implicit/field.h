@@ -32,6 +32,10 @@ public:
     int sign_on(const Region& box);
     /// The value of f in doubles.
     double value(const Point3& place);
+    /// Value and gradient in doubles.
+    const expression::Jet<double>& slope(const Point3& place) {
+        return doubles_.evaluate<1>({place.x, place.y, place.z});
+    }
     /// Value, gradient and Hessian in doubles.
     const expression::Jet<double>& jet(const Point3& place);
 

@@ -11,13 +11,6 @@
 namespace certa::implicit {
 namespace {
 
-double unit_of(const Surface& surface) {
-    double sum = 0;
-    for (const Triangle& t : surface.mesh.triangles)
-        sum += distance(surface.mesh.positions[index_of(t[0])], surface.mesh.positions[index_of(t[1])]);
-    return surface.mesh.triangles.empty() ? 1.0 : sum / static_cast<double>(surface.mesh.triangles.size());
-}
-
 double smallest_angle(const Corners& t) {
     double smallest = 4;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -32,7 +25,7 @@ bool has(const Reshaper::Triple& t, std::uint32_t v) { return t[0] == v || t[1] 
 }  // namespace
 
 Reshaper::Reshaper(const Surface& surface, const Frontier* frontier, Field& field)
-    : frontier_(frontier), field_(field), components_(surface.component_of_triangle), grid_(unit_of(surface)) {
+    : frontier_(frontier), field_(field), components_(surface.component_of_triangle), grid_(1.0) {
     positions_ = surface.mesh.positions;
     normals_.resize(positions_.size());
     around_.resize(positions_.size());
@@ -41,10 +34,21 @@ Reshaper::Reshaper(const Surface& surface, const Frontier* frontier, Field& fiel
         const auto id = static_cast<std::uint32_t>(triangles_.size());
         triangles_.push_back({index_of(t[0]), index_of(t[1]), index_of(t[2])});
         for (const std::uint32_t v : triangles_.back()) around_[v].push_back(id);
-        grid_.insert(id, Bounds::of(corners(triangles_.back())));
     }
     alive_.assign(triangles_.size(), 1);
     living_ = triangles_.size();
+    sort_by_place();
+}
+
+void Reshaper::sort_by_place() {
+    double sum = 0;
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        if (alive_[t]) sum += distance(positions_[triangles_[t][0]], positions_[triangles_[t][1]]);
+    }
+    grid_ = TriangleGrid(sum > 0 ? sum / static_cast<double>(living_) : 1.0);
+    for (std::uint32_t t = 0; t < triangles_.size(); ++t) {
+        if (alive_[t]) grid_.insert(t, Bounds::of(corners(triangles_[t])));
+    }
 }
 
 void Reshaper::set_place(std::uint32_t v, const Point3& place) {
@@ -140,8 +144,7 @@ bool Reshaper::pair_apart(const Triple& s, const Triple& t) const {
     return false;
 }
 
-bool Reshaper::keeps_apart(const Triple& t, std::span<const std::uint32_t> old, std::span<const Triple> fresh,
-                           std::size_t position) {
+bool Reshaper::keeps_apart(const Triple& t, std::span<const Triple> fresh, std::size_t position) {
     const Corners here = corners(t);
     if (frontier_ != nullptr && !frontier_->is_clear(here)) return false;
     for (std::size_t i = 0; i < position; ++i) {
@@ -149,8 +152,9 @@ bool Reshaper::keeps_apart(const Triple& t, std::span<const std::uint32_t> old, 
     }
     near_.clear();
     grid_.find(Bounds::of(here), near_);
+    const Bounds box = Bounds::of(here);
     for (const std::uint32_t other : near_) {
-        if (std::find(old.begin(), old.end(), other) != old.end()) continue;
+        if (!box.meets(Bounds::of(corners(triangles_[other])))) continue;
         if (!pair_apart(t, triangles_[other])) return false;
     }
     return true;
@@ -165,7 +169,7 @@ bool Reshaper::replace(std::span<const std::uint32_t> old, std::span<const Tripl
         if (!(one.error <= wanted.error) || !(one.alignment >= wanted.alignment)) return false;
     }
     for (std::size_t i = 0; i < fresh.size(); ++i) {
-        if (!keeps_apart(fresh[i], old, fresh, i)) return false;
+        if (!keeps_apart(fresh[i], fresh, i)) return false;
     }
     // From here on the change is made. Boxes in the grid are those before the move, which `collapse` and `move` keep.
     const std::uint32_t component = components_[old[0]];

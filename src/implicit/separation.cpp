@@ -88,10 +88,13 @@ bool apart_beyond_edge(const Corners& s, const Corners& t) {
     return dot(a, b) < 0.98 * norm(a) * norm(b);
 }
 
+/// Smaller triangles share the cells of this level: else large boxes would have very many cells to look into.
+constexpr int lowest = -1;
+
 TriangleGrid::Key TriangleGrid::key_of(const Bounds& box) const {
     const double size =
         std::max({box.high.x - box.low.x, box.high.y - box.low.y, box.high.z - box.low.z, unit_ * 0x1p-50});
-    const int level = std::clamp(std::ilogb(size / unit_) + 1, -60, 60);
+    const int level = std::clamp(std::ilogb(size / unit_) + 1, lowest, 60);
     const double cell = std::ldexp(unit_, level);
     const auto at = [&](double low, double high) {
         return static_cast<std::int32_t>(std::clamp(std::floor((low / 2 + high / 2) / cell), -2e9, 2e9));
@@ -120,7 +123,7 @@ void TriangleGrid::remove(std::uint32_t id, const Bounds& box) {
 }
 
 void TriangleGrid::find(const Bounds& box, std::vector<std::uint32_t>& ids) const {
-    for (int level = -60; level <= 60; ++level) {
+    for (int level = lowest; level <= 60; ++level) {
         if (per_level_[static_cast<std::size_t>(level + 64)] == 0) continue;
         const double cell = std::ldexp(unit_, level);
         // A triangle of this level reaches at most half a cell from its middle.

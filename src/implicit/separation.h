@@ -33,7 +33,7 @@ struct Bounds {
 /// the grid whose cells are about as large as it is.
 class TriangleGrid {
 public:
-    /// `unit`: a length; grids have cells of unit 2^k.
+    /// `unit`: about the length of an edge; grids have cells of unit 2^k.
     explicit TriangleGrid(double unit) : unit_(unit) {}
     void insert(std::uint32_t id, const Bounds& box);
     void remove(std::uint32_t id, const Bounds& box);

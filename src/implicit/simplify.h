@@ -1,0 +1,22 @@
+#pragma once
+// Few, well-shaped triangles near the zero set, within W.
+#include <certa/run_control.h>
+
+#include "implicit/frontier.h"
+#include "implicit/surface.h"
+
+namespace certa::implicit {
+
+struct Simplification {
+    double error = 0;                        ///< wanted distance to the zero set, by sampled estimates
+    std::size_t most_triangles = 8'000'000;  ///< refinement stops there
+};
+
+/// Definition: triangles that are farther than `error` from the zero set are refined, others merged while they stay
+///             within it; vertices lie on the zero set to rounding where that keeps the mesh in W.
+/// Guarantee:  the result is embedded, in W and of the same topology, every step being filtered with a margin
+///             (reshape.h). The error is sampled, not proved. `frontier` may be null: then nothing keeps the mesh in W.
+Surface simplify(const Surface& surface, const Frontier* frontier, const expression::Tape& tape,
+                 const Simplification& wanted, const RunControl& control);
+
+}  // namespace certa::implicit
