@@ -14,7 +14,7 @@ struct DistanceOptions {
     bool bound = true;                   ///< also compute the proved bounds
     double tolerance = 0.02;             ///< bounds may exceed the largest distance found by this factor (below 1) ...
     Length resolution{1e-5, true};       ///< ... or may be this length, whichever is more
-    std::uint64_t max_pieces = 2000000;  ///< pieces of triangles that the search for a bound may look at
+    std::uint64_t max_pieces = 1000000;  ///< pieces of triangles that the search for a bound may look at
 };
 
 /// Distances from the points of one surface to the other surface.

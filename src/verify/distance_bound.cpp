@@ -194,7 +194,7 @@ public:
         verdict.place = window.is_valid() ? window.centre() : (1.0 / 3.0) * (piece.p[0] + piece.p[1] + piece.p[2]);
         const core::NearestPoint nearest = tree_.find_nearest(verdict.place, piece.hint);
         verdict.hint = nearest.triangle;
-        const std::uint32_t near = to_.polygon_of(nearest.triangle);
+        std::uint32_t near = to_.polygon_of(nearest.triangle);
         verdict.lower = piece.slack + farthest_choice(verdict.place, near);
         verdict.upper = std::min(verdict.upper, convex_bound(piece.p, near) + slack);
         if (verdict.upper > enough && verdict.lower + slack < enough && window.is_valid())
@@ -205,13 +205,16 @@ public:
 private:
     /// The largest distance of x from `to` over all choices of triangulations, which are free: the nearest polygon
     /// counts, each at its worst. It is what the bounds of smaller and smaller pieces tend to; that a polygon whose
-    /// unchosen triangles alone are near may be overlooked makes it larger and the search stop earlier.
-    double farthest_choice(const Point3& x, std::uint32_t near) {
+    /// unchosen triangles alone are near may be overlooked makes it larger and the search stop earlier. `near` becomes
+    /// that polygon.
+    double farthest_choice(const Point3& x, std::uint32_t& near) {
         double least = convex_bound({x, x, x}, near);
         if (!to_.has_choices()) return least;
         const Point3 reach{least, least, least};
         tree_.visit_box(x - reach, x + reach, [&](std::uint32_t t) {
-            if (to_.polygon_of(t) != near) least = std::min(least, convex_bound({x, x, x}, to_.polygon_of(t)));
+            if (to_.polygon_of(t) == near) return;
+            const double other = convex_bound({x, x, x}, to_.polygon_of(t));
+            if (other < least) least = other, near = to_.polygon_of(t);
         });
         return least;
     }
@@ -237,17 +240,31 @@ private:
         return std::sqrt(worst) + to_.slack(q);
     }
 
+    void project_ring(const Window& window, std::uint32_t q) {
+        ring_.clear();
+        for (const std::uint32_t v : to_.polygon(q)) ring_.push_back(window.project(to_.positions()[v]));
+    }
+
     double covering_bound(const Window& window, std::uint32_t start, double enough) {
-        ++epoch_;
-        stack_.assign(1, start);
-        visited_[start] = epoch_;
+        epoch_ += 2;
+        stack_.clear();
+        const auto visit = [&](std::uint32_t q, bool is_turned) {  // false: reached before, the other way round
+            const std::uint32_t mark = epoch_ + (is_turned ? 1 : 0);
+            if (visited_[q] >= epoch_) return visited_[q] == mark;
+            visited_[q] = mark;
+            stack_.push_back(q);
+            return true;
+        };
+        project_ring(window, start);
+        visit(start, !surely_simple(ring_));
         double largest = 0.0;
         bool is_met = false;
         while (!stack_.empty()) {
             const std::uint32_t q = stack_.back();
             stack_.pop_back();
-            ring_.clear();
-            for (const std::uint32_t v : to_.polygon(q)) ring_.push_back(window.project(to_.positions()[v]));
+            const bool is_turned = visited_[q] == epoch_ + 1;
+            project_ring(window, q);
+            if (is_turned) std::reverse(ring_.begin(), ring_.end());
             if (!surely_simple(ring_)) return infinite;
             for (const PolygonSurface::Corners& corners : to_.possible(q)) {
                 const std::array<Point3, 3> points = to_.points(corners);
@@ -258,13 +275,12 @@ private:
                 is_met = is_met || window.largest_height(t, -10.0 * inflation) >= 0.0;
             }
             if (largest + window.shrinking() > enough) return infinite;
-            for (std::size_t i = 0; i < ring_.size(); ++i) {
-                if (!window.may_meet(ring_[i], ring_[(i + 1) % ring_.size()])) continue;
+            const std::size_t n = ring_.size();
+            for (std::size_t k = 0; k < n; ++k) {
+                if (!window.may_meet(ring_[k], ring_[(k + 1) % n])) continue;
+                const std::size_t i = is_turned ? (2 * n - 2 - k) % n : k;  // the side, as the polygon counts
                 const std::uint32_t next = to_.across(q, i);
-                if (next == no_index) return infinite;
-                if (visited_[next] == epoch_) continue;
-                visited_[next] = epoch_;
-                stack_.push_back(next);
+                if (next == no_index || !visit(next, is_turned != to_.walks_alike(q, i))) return infinite;
             }
         }
         return is_met ? largest + window.shrinking() : infinite;

@@ -178,12 +178,15 @@ void PolygonSurface::connect() {
     std::sort(sides.begin(), sides.end(),
               [](const Side& l, const Side& r) { return l.key != r.key ? l.key < r.key : l.slot < r.slot; });
     across_.assign(corners_.size(), no_index);
+    walks_alike_.assign(corners_.size(), false);
     for (std::size_t i = 0; i < sides.size();) {
         std::size_t j = i + 1;
         while (j < sides.size() && sides[j].key == sides[i].key) ++j;
-        if (j - i == 2 && sides[i].is_reversed != sides[i + 1].is_reversed) {
+        if (j - i == 2) {
             across_[sides[i].slot] = sides[i + 1].polygon;
             across_[sides[i + 1].slot] = sides[i].polygon;
+            const bool is_alike = sides[i].is_reversed == sides[i + 1].is_reversed;
+            walks_alike_[sides[i].slot] = walks_alike_[sides[i + 1].slot] = is_alike;
         }
         i = j;
     }

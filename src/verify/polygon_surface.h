@@ -34,9 +34,10 @@ public:
     std::span<const std::uint32_t> polygon(std::size_t q) const {
         return {corners_.data() + offsets_[q], offsets_[q + 1] - offsets_[q]};
     }
-    /// The polygon across the side from corner i to the next, no_index unless exactly one other polygon is there and
-    /// walks it the other way.
+    /// The polygon across the side from corner i to the next; no_index unless exactly one other polygon is there.
     std::uint32_t across(std::size_t q, std::size_t i) const { return across_[offsets_[q] + i]; }
+    /// Whether that polygon walks the side the same way, as none should.
+    bool walks_alike(std::size_t q, std::size_t i) const { return walks_alike_[offsets_[q] + i]; }
     /// Triangles that occur in a triangulation of q.
     std::span<const Corners> possible(std::size_t q) const {
         return {possible_.data() + possible_offsets_[q], possible_offsets_[q + 1] - possible_offsets_[q]};
@@ -74,6 +75,7 @@ private:
 
     std::vector<Point3> positions_;
     std::vector<std::uint32_t> corners_, offsets_, across_;
+    std::vector<bool> walks_alike_;  // parallel to across_
     std::vector<Corners> possible_;
     std::vector<std::uint32_t> possible_offsets_{0}, choices_, choice_offsets_{0};
     std::vector<double> slacks_;
