@@ -42,19 +42,23 @@ const char* advice(ImplicitObstacle::Reason reason) {
                    "nearly "
                    "so; another level, or a smooth blend, may avoid it";
         case ImplicitObstacle::Reason::meets_box:
-            return "the surface meets the box there; a larger or smaller --box may not";
+            return "the surface meets the box there; a larger or smaller --box may not, and --clip meshes what is "
+                   "inside";
+        case ImplicitObstacle::Reason::tangent_to_box:
+            return "the surface is tangent to the box there, or meets one of its corners, or nearly so; another --box "
+                   "may not be";
         case ImplicitObstacle::Reason::undefined:
             return "the function is not defined there, or cannot be shown to be; choose a --box where it is";
         case ImplicitObstacle::Reason::precision:
             return "the cells have become as small as doubles or --max-depth allow";
         case ImplicitObstacle::Reason::budget:
-            return "--max-cells was reached; the boxes are where it would go on";
+            return "--max-cells or --time was reached; the boxes are where it would go on";
         default:
             return "interrupted";
     }
 }
 
-void report_result(Session& session, const ImplicitResult& result) {
+void report_result(Session& session, const ImplicitResult& result, bool clipped) {
     Json& report = session.report();
     report["outcome"] = name_of(result.outcome);
     report["verdict"] = name_of(result.verdict);
@@ -64,6 +68,7 @@ void report_result(Session& session, const ImplicitResult& result) {
     for (const ImplicitComponent& c : result.components) {
         Json entry{{"genus", c.genus}, {"inner_sign", c.inner_sign}, {"degree", c.degree}};
         entry["parent"] = c.parent ? Json(*c.parent + 1) : Json(nullptr);
+        if (clipped) entry = {{"genus", c.genus}, {"boundary_loops", c.loops}};
         components.push_back(entry);
     }
     report["components"] = components;
@@ -90,6 +95,11 @@ ExitCode end_undecided(Session& session, const ImplicitResult& result) {
     return ExitCode::unable;
 }
 
+/// A genus, and the loops of a component that has any.
+std::string form_of(int genus, int loops) {
+    return std::to_string(genus) + (loops == 0 ? "" : " with " + counted(static_cast<std::size_t>(loops), "loop"));
+}
+
 void say_result(Session& session, const ImplicitResult& result) {
     const std::string box = " in the box " + place_text(result.low) + " to " + place_text(result.high);
     if (result.verdict == ImplicitVerdict::empty) {
@@ -98,7 +108,7 @@ void say_result(Session& session, const ImplicitResult& result) {
     }
     std::string genera;
     for (std::size_t i = 0; i < result.components.size() && i < 20; ++i)
-        genera += (i == 0 ? "" : ", ") + std::to_string(result.components[i].genus);
+        genera += (i == 0 ? "" : ", ") + form_of(result.components[i].genus, result.components[i].loops);
     if (result.components.size() > 20) genera += ", ...";
     session.say("CERTIFIED" + box + ": " + counted(result.components.size(), "component") + " of genus " + genera +
                 "; " + counted(result.mesh.positions.size(), "vertex", "vertices") + ", " +
@@ -106,6 +116,12 @@ void say_result(Session& session, const ImplicitResult& result) {
     session.detail("  " + counted(result.statistics.leaves, "leaf", "leaves") + ", " +
                    counted(result.statistics.clusters, "critical cluster") + ", " +
                    counted(result.statistics.rounds, "round"));
+}
+
+/// What a check proved, by name.
+std::vector<std::string> promises_of(const ImplicitCheck& check) {
+    if (check.isotopic) return {"isotopic"};
+    return {"components", "genera", "boundary_loops"};
 }
 
 void verify(Session& session, const ImplicitResult& result, const std::string& function) {
@@ -117,7 +133,7 @@ void verify(Session& session, const ImplicitResult& result, const std::string& f
     session.report()["check"] = to_json(check);
     if (!check.ok())
         throw InternalError("the result failed its own check and was not written: " + check.violations.front());
-    session.report()["proved"] = {"isotopic"};
+    session.report()["proved"] = promises_of(check);
     session.say("verified by the independent checker: " + counted(check.leaves_checked, "leaf", "leaves") + ", " +
                 counted(check.marks_checked, "mark") + ", " + counted(check.triangles_checked, "triangle"));
 }
@@ -160,7 +176,7 @@ ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
         const GracefulScope graceful;
         return mesh_implicit(function, {b[0], b[1], b[2]}, {b[3], b[4], b[5]}, settings, session.control());
     });
-    report_result(session, result);
+    report_result(session, result, settings.clip);
     if (result.verdict == ImplicitVerdict::undecided) return end_undecided(session, result);
     say_result(session, result);
     if (!arguments.no_verify) verify(session, result, source.text);
@@ -237,13 +253,17 @@ ExitCode check_implicit_mesh(Session& session, const MeshDocument& document, con
         for (std::size_t i = 0; i < check.violations.size() && (i < 20 || session.flags().verbose); ++i)
             session.say(check.violations[i]);
         session.say("VIOLATED: " + counted(check.violation_count, "violation") +
-                    "; the certificate does not prove the mesh isotopic to the zero set");
+                    "; the certificate does not prove what it claims of the mesh and the zero set");
         return ExitCode::violated;
     }
-    session.report()["proved"] = {"isotopic"};
+    session.report()["checked"] = session.report()["proved"] = promises_of(check);
     std::string genera;
-    for (const int genus : check.genera) genera += (genera.empty() ? " of genus " : ", ") + std::to_string(genus);
-    session.say("verified: isotopic to the zero set; " + counted(check.genera.size(), "component") + genera + "; " +
+    for (std::size_t i = 0; i < check.genera.size(); ++i)
+        genera += (i == 0 ? " of genus " : ", ") + form_of(check.genera[i], check.loops.empty() ? 0 : check.loops[i]);
+    session.say("verified: " +
+                std::string(check.isotopic ? "isotopic to the zero set; "
+                                           : "components, genera and loops are those of the zero set; ") +
+                counted(check.genera.size(), "component") + genera + "; " +
                 counted(check.leaves_checked, "leaf", "leaves") + ", " + counted(check.marks_checked, "mark") + ", " +
                 counted(check.triangles_checked, "triangle") + " checked");
     return ExitCode::done;
@@ -265,7 +285,9 @@ void add_implicit_command(CLI::App& app, Action& action) {
                      "triangle mesh to write (-: standard output); without it only the report is printed")
         ->type_name("OUT");
     add_format_option(*command, "--output-format", arguments->output);
-    command->add_option("--box", arguments->box, "low and high corner; the surface must not meet it (default: -2 to 2)")
+    command
+        ->add_option("--box", arguments->box,
+                     "low and high corner; without --clip the surface must not meet it (default: -2 to 2)")
         ->expected(6)
         ->type_name("X0 Y0 Z0 X1 Y1 Z1");
     add_options(*command, frontend::implicit_options(), arguments->options);

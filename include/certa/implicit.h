@@ -124,7 +124,7 @@ struct ImplicitObstacle {
         tangent_to_box,  ///< of a box that clips: the surface is tangent to a face or an edge of it, or meets a corner
         undefined,       ///< f cannot be shown to be defined there
         precision,       ///< the cell is as small as doubles allow
-        budget,          ///< max_cells
+        budget,          ///< max_cells or time_seconds
         cancelled,
     };
     Reason reason{};
@@ -140,6 +140,8 @@ struct ImplicitOptions {
     /// The mesh is refined and simplified to this distance from the zero set, as sampled; closed surfaces only. Without
     /// it: the raw mesh of the triangulation, as fine as the proof needs it and no finer.
     std::optional<double> error = std::nullopt;
+    /// Seconds after which no further round begins; the result then depends on the machine. Empty: no limit.
+    std::optional<std::uint64_t> time_seconds = std::nullopt;
     /// The surface may meet the box: what lies in the box is meshed, with loops in the box's boundary. Components,
     /// genera and loops are certified then (docs/implicit-theorem.md), isotopy is not claimed.
     bool clip = false;
@@ -192,8 +194,9 @@ struct ImplicitCheck {
     std::vector<std::string> violations;  ///< at most 100 are kept; what is claimed and not proved, with its place
     std::size_t violation_count = 0;
     ImplicitVerdict verdict = ImplicitVerdict::undecided;  ///< proved by the check: certified, empty; else undecided
-    std::vector<int> genera;                               ///< per component of the mesh, sorted
-    std::vector<int> loops;  ///< of a clipped surface, in the order of genera: boundary loops
+    bool isotopic = false;    ///< proved: the mesh is isotopic to the zero set; else components, genera and loops agree
+    std::vector<int> genera;  ///< per component of the mesh, sorted
+    std::vector<int> loops;   ///< of a clipped surface, in the order of genera: boundary loops
     std::size_t leaves_checked = 0, marks_checked = 0, triangles_checked = 0;
     bool ok() const { return violation_count == 0; }
 };

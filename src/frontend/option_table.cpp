@@ -122,6 +122,17 @@ constexpr std::array implicit_table{
                             &ImplicitOptions::max_depth,
                             {1.0, infinity, false, true},
                             "stop where cells would be smaller than the box halved so often"},
+    Option<ImplicitOptions>{"time_seconds",
+                            "time",
+                            &ImplicitOptions::time_seconds,
+                            {1.0, infinity, false, true},
+                            "begin no further round after this many seconds"},
+    Option<ImplicitOptions>{"clip",
+                            "clip",
+                            &ImplicitOptions::clip,
+                            {},
+                            "the surface may meet the box: mesh what is inside; components, genera and boundary loops "
+                            "are certified, not isotopy"},
 };
 
 constexpr std::array view_table{

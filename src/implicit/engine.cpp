@@ -34,6 +34,8 @@ public:
         limits_.max_cells = options.max_cells.value_or(std::uint64_t{1} << 31);
         const auto deepest = static_cast<std::uint64_t>(tree_.max_depth());
         limits_.max_depth = static_cast<int>(std::min(options.max_depth.value_or(deepest), deepest));
+        if (options.time_seconds && *options.time_seconds < 1'000'000'000)
+            limits_.deadline = std::chrono::steady_clock::now() + std::chrono::seconds(*options.time_seconds);
     }
 
     ImplicitResult run() {
@@ -151,6 +153,8 @@ ImplicitResult mesh_implicit(const Expression& function, const Point3& low, cons
     }
     if (options.max_depth && *options.max_depth < 1)
         implicit::refuse(DefectKind::option_out_of_range, "max_depth must be at least 1");
+    if (options.time_seconds && *options.time_seconds < 1)
+        implicit::refuse(DefectKind::option_out_of_range, "time_seconds must be at least 1");
     if (options.max_cells && *options.max_cells < 64)
         implicit::refuse(DefectKind::option_out_of_range, "max_cells must be at least 64");
     const auto grid = implicit::Grid::around(low, high);

@@ -199,7 +199,8 @@ public:
             if (control_.cancelled()) return Obstacle{Reason::cancelled, {}};
             control_.report("classify", std::min(0.95, 0.06 * depth));
             if (auto obstacle = look_ahead(open, depth)) return obstacle;
-            if (tree_.cells().size() + 8 * open.size() > limits_.max_cells) return Obstacle{Reason::budget, open};
+            if (tree_.cells().size() + 8 * open.size() > limits_.max_cells || limits_.is_late())
+                return Obstacle{Reason::budget, open};
             generation.clear();
             for (const std::uint32_t id : open) {
                 const std::uint32_t first = tree_.split(id);
@@ -272,7 +273,8 @@ std::optional<Obstacle> classify(Octree& tree, const expression::Tape& tape, con
 
 std::optional<Obstacle> split_all(Octree& tree, const std::vector<std::uint32_t>& leaves, const expression::Tape& tape,
                                   const Limits& limits, const RunControl& control) {
-    if (tree.cells().size() + 8 * leaves.size() > limits.max_cells) return Obstacle{Reason::budget, leaves};
+    if (tree.cells().size() + 8 * leaves.size() > limits.max_cells || limits.is_late())
+        return Obstacle{Reason::budget, leaves};
     std::vector<std::uint32_t> deepest, children;
     for (const std::uint32_t leaf : leaves) {
         if (tree.cell(leaf).depth >= limits.max_depth) deepest.push_back(leaf);

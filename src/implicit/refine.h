@@ -2,6 +2,7 @@
 // Subdivision: classification of the box into settled leaves, and what stands in its way.
 #include <certa/implicit.h>
 
+#include <chrono>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,8 @@ struct Obstacle {
 struct Limits {
     std::uint64_t max_cells = 0;
     int max_depth = 0;
+    std::optional<std::chrono::steady_clock::time_point> deadline = std::nullopt;
+    bool is_late() const { return deadline && std::chrono::steady_clock::now() > *deadline; }
 };
 
 /// Splits until every leaf is settled and every leaf that touches the box has a sign; or returns the obstacle.

@@ -489,9 +489,10 @@ ImplicitCheck check_implicit(const TriangleMesh& mesh, std::string_view function
         for (std::string& reason : found.hindering) verify::add_to(result, std::move(reason));
         if (result.ok() && !found.faces_positive) verify::add_to(result, "the mesh faces the negative side of f");
     });
-    if (result.ok())
+    if (result.ok()) {
         result.verdict = result.genera.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
-    else {
+        result.isotopic = result.loops.empty();
+    } else {
         result.genera.clear();
         result.loops.clear();
     }
