@@ -6,6 +6,7 @@
 #include <certa/implicit.h>
 #include <certa/io.h>
 #include <certa/remeshing.h>
+#include <certa/surface_check.h>
 #include <certa/view.h>
 
 #include <cstdint>
@@ -89,6 +90,10 @@ struct MemberOf<RemeshOptions> {
     using type = std::variant<double RemeshOptions::*, Choice<RemeshOptions>, Spelled<RemeshOptions>>;
 };
 template <>
+struct MemberOf<SurfaceCheckOptions> {
+    using type = std::variant<Spelled<SurfaceCheckOptions>>;
+};
+template <>
 struct MemberOf<OutputOptions> {
     using type = std::variant<Choice<OutputOptions>>;
 };
@@ -100,6 +105,7 @@ std::span<const Option<OutputOptions>> output_options();  ///< the last one, ref
 std::span<const Option<ViewOptions>> view_options();
 std::span<const Option<ImplicitOptions>> implicit_options();
 std::span<const Option<RemeshOptions>> remesh_options();
+std::span<const Option<SurfaceCheckOptions>> surface_check_options();
 
 /// "rings", "ball" or "geodesic"
 std::string neighborhood_name(const CurvatureOptions& options);

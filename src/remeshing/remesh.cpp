@@ -109,7 +109,6 @@ SpacingRule Remesher::rule_of(double error) const {
     rule.error = error;
     rule.isotropy = options_.isotropy;
     rule.transfer = options_.transfer;
-    rule.largest = 0.35 * mesh_.diagonal;
     return rule;
 }
 

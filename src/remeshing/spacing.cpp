@@ -36,33 +36,59 @@ void limit_growth(const WorkMesh& mesh, std::vector<double>& size, double growth
     }
 }
 
+std::vector<double> component_diagonals(const WorkMesh& mesh) {
+    std::vector<Point3> low(mesh.component_count, {1e300, 1e300, 1e300}),
+        high(mesh.component_count, {-1e300, -1e300, -1e300});
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        Point3 &l = low[mesh.components[f]], &h = high[mesh.components[f]];
+        for (const Index v : mesh.faces[f]) {
+            const Point3& p = mesh.points[v];
+            l = {std::min(l.x, p.x), std::min(l.y, p.y), std::min(l.z, p.z)};
+            h = {std::max(h.x, p.x), std::max(h.y, p.y), std::max(h.z, p.z)};
+        }
+    }
+    std::vector<double> diagonals(mesh.component_count);
+    for (Index c = 0; c < mesh.component_count; ++c) diagonals[c] = distance(low[c], high[c]);
+    return diagonals;
+}
+
 }  // namespace
 
-double chord_of(double curvature, const SpacingRule& rule) {
+double chord_of(double curvature, double largest, const SpacingRule& rule) {
     const double k = std::abs(curvature);
     const double floor = 0.5 * rule.error;
-    if (!(k > 0.0)) return rule.largest;
+    if (!(k > 0.0)) return largest;
     double chord = 0.0;
     if (rule.transfer == 0.5) {
         chord = k * rule.error >= 1.0 ? 2.0 / k : 2.0 * std::sqrt(rule.error * (2.0 / k - rule.error));
     } else {
         // Density |k|^P, such that curvature 1 / diagonal keeps its spacing.
-        const double unit = 1.0 / rule.largest;
+        const double unit = 1.0 / largest;
         chord = std::sqrt(8.0 * rule.error / unit) * std::pow(k / unit, -rule.transfer);
     }
-    return std::clamp(chord, floor, rule.largest);
+    return std::clamp(chord, floor, largest);
 }
 
 Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const SpacingRule& rule) {
     Spacing spacing;
     const double half = 0.5 * rule.isotropy;
+    const std::vector<double> diagonals = component_diagonals(mesh);
     for (auto& at : spacing.at) at.resize(mesh.wedge_count());
     for (Index w = 0; w < mesh.wedge_count(); ++w) {
+        const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
         const double low = std::abs(field.k_min[w]), high = std::abs(field.k_max[w]);
-        spacing.at[along_max][w] = chord_of(half * high + (1.0 - half) * low, rule);
-        spacing.at[along_min][w] = chord_of(half * low + (1.0 - half) * high, rule);
+        spacing.at[along_max][w] = chord_of(half * high + (1.0 - half) * low, largest, rule);
+        spacing.at[along_min][w] = chord_of(half * low + (1.0 - half) * high, largest, rule);
     }
-    for (auto& at : spacing.at) limit_growth(mesh, at, rule.growth);
+    for (std::size_t family = 0; family < 2; ++family) {
+        const std::vector<double> raw = spacing.at[family];
+        limit_growth(mesh, spacing.at[family], rule.growth);
+        spacing.wanted[family].resize(raw.size());
+        for (Index w = 0; w < mesh.wedge_count(); ++w) {
+            const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
+            spacing.wanted[family][w] = raw[w] < 0.999 * largest && raw[w] < 4.0 * spacing.at[family][w];
+        }
+    }
     return spacing;
 }
 

@@ -8,17 +8,19 @@ struct SpacingRule {
     double error = 0.0;     ///< epsilon of equation 4.6
     double isotropy = 0.0;  ///< rho
     double transfer = 0.5;
-    double largest = 0.0;  ///< where curvature vanishes there need not be lines at all
-    double growth = 1.5;   ///< spacing grows by at most this much per length: curvature is not constant over a gap
+    double largest = 0.35;  ///< in diagonals of the component: where curvature vanishes there need not be lines
+    double growth = 1.5;    ///< spacing grows by at most this much per length: curvature is not constant over a gap
 };
 
 /// Distance between neighbouring lines of each family, per wedge.
 struct Spacing {
     std::array<std::vector<double>, 2> at;
+    /// Whether curvature asks for lines at all, per wedge: in flat parts nothing is sown.
+    std::array<std::vector<bool>, 2> wanted;
 };
 
 /// Equation 4.6: the chord of a circle of curvature k with sagitta e; `largest` where it would be longer.
-double chord_of(double curvature, const SpacingRule& rule);
+double chord_of(double curvature, double largest, const SpacingRule& rule);
 Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const SpacingRule& rule);
 /// Number of vertices that a perfect network of this spacing has.
 double expected_vertices(const WorkMesh& mesh, const Spacing& spacing);

@@ -43,6 +43,7 @@ public:
           field_(field),
           spacing_(spacing.at[family]),
           other_spacing_(spacing.at[1 - family]),
+          wanted_(spacing.wanted[family]),
           rule_(rule),
           family_(family),
           control_(control),
@@ -109,6 +110,7 @@ private:
     const WorkMesh& mesh_;
     const DirectionField& field_;
     const std::vector<double>&spacing_, &other_spacing_;
+    const std::vector<bool>& wanted_;
     const TraceRule& rule_;
     Family family_;
     const RunControl& control_;
@@ -163,7 +165,7 @@ void FamilyTracer::seed_umbilics() {
                     const double part = before.imag() / (before.imag() - after.imag());
                     const double t = (k - 1 + part) / pieces;
                     const Index w = mesh_.wedges[h];
-                    if (!mesh_.is_feature(h))
+                    if (!mesh_.is_feature(h) && wanted_[w])
                         push_seed(mesh_.edges[h], along_halfedge(h, t), -1e9 + spacing_[w], 0.3,
                                   mesh_.opposites[h] / 3);
                 }
@@ -217,7 +219,7 @@ void FamilyTracer::fill_gaps() {
         bool any = false;
         for (Index w = 0; w < mesh_.wedge_count(); ++w) {
             const double relative = proximity_.relative(w);
-            if (relative < rule_.gap_above || spacing_[w] > 0.34 * mesh_.diagonal) continue;
+            if (relative < rule_.gap_above || !wanted_[w]) continue;
             // Of the edges around, the one that the line crosses most squarely.
             Index c = mesh_.wedge_first[w];
             const Index first = c;
