@@ -150,9 +150,9 @@ struct ImplicitOptions {
 /// A connected component of the surface.
 struct ImplicitComponent {
     int genus = 0;       ///< of a clipped one: with a disk glued to each loop
-    int inner_sign = 0;  ///< of f just inside; 0 in a box that clips, which has no inside
-    int degree = 0;      ///< of the gradient over what the component encloses: inner_sign * (genus - 1); 0 likewise
-    std::optional<std::uint32_t> parent;  ///< the component next around it; empty likewise
+    int inner_sign = 0;  ///< of f just inside; 0 unless isotopic
+    int degree = 0;  ///< of the gradient over what the component encloses: inner_sign * (genus - 1); 0 unless isotopic
+    std::optional<std::uint32_t> parent;  ///< the component next around it; empty unless isotopic
     int loops = 0;                        ///< boundary loops in the faces of a box that clips
 };
 
@@ -164,7 +164,11 @@ struct ImplicitStatistics {
 struct ImplicitResult {
     Outcome outcome = Outcome::done;
     ImplicitVerdict verdict = ImplicitVerdict::undecided;
-    TriangleMesh mesh;                               ///< closed, embedded, faces towards f > 0; empty unless certified
+    /// Certified: the mesh is isotopic to the zero set. If not, its components, genera and loops are those of the zero
+    /// set (the type of the surface), but of a product, meshes of different factors may come close to each other or
+    /// meet.
+    bool isotopic = false;
+    TriangleMesh mesh;  ///< faces towards f > 0; if isotopic, closed and embedded; empty unless certified
     std::vector<std::uint32_t> triangle_components;  ///< per triangle
     std::vector<ImplicitComponent> components;
     std::vector<ImplicitObstacle> obstacles;  ///< the first 1000

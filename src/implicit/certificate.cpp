@@ -103,4 +103,22 @@ std::string write_certificate(const Expression& function, const Octree& tree, co
     return text + "]}\n";
 }
 
+std::string write_product_certificate(const std::vector<const ImplicitResult*>& factors) {
+    std::string text = "{\"format\":\"certa implicit product\",\"version\":1,\n";
+    std::vector<std::size_t> vertices, triangles;
+    for (const ImplicitResult* factor : factors) {
+        vertices.push_back(factor->mesh.positions.size());
+        triangles.push_back(factor->mesh.triangles.size());
+    }
+    append_numbers("vertices", vertices, text);
+    text += ",";
+    append_numbers("triangles", triangles, text);
+    text += ",\n\"factors\":[";
+    for (const ImplicitResult* factor : factors) {
+        if (text.back() != '[') text += ",";
+        text += "\n" + factor->certificate;
+    }
+    return text + "]}\n";
+}
+
 }  // namespace certa::implicit

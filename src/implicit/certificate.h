@@ -16,4 +16,7 @@ std::string write_certificate(const Expression& function, const Octree& tree, co
                               const Growth& growth, const Surface& surface,
                               const std::vector<ImplicitComponent>& components);
 
+/// The certificates of the factors of a product whose meshes follow each other in one mesh.
+std::string write_product_certificate(const std::vector<const ImplicitResult*>& factors);
+
 }  // namespace certa::implicit

@@ -1,5 +1,7 @@
 // The main loop of Part III: classify, find clusters and degrees, then triangulate, grow W, check the conditions, and
 // split what breaks them, a generation a round, until all hold or nothing more can be done.
+#include "implicit/engine.h"
+
 #include <certa/implicit.h>
 
 #include <algorithm>
@@ -12,6 +14,7 @@
 #include "implicit/conditions.h"
 #include "implicit/frontier.h"
 #include "implicit/growth.h"
+#include "implicit/product.h"
 #include "implicit/refine.h"
 #include "implicit/simplify.h"
 #include "implicit/surface.h"
@@ -103,6 +106,7 @@ private:
         result_.statistics.tetrahedra = triangulation.tetrahedra().size();
         result_.outcome = Outcome::done;
         result_.verdict = findings.components.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
+        result_.isotopic = !tree_.is_clipped();
         for (const ComponentOfW& component : findings.components) {
             CERTA_ASSERT((component.euler8 + 2 * component.edge_points) % 8 == 0);
             CERTA_ASSERT((component.euler() + component.loops) % 2 == 0 && component.genus() >= 0);
@@ -140,6 +144,12 @@ private:
 }
 
 }  // namespace
+
+ImplicitResult certify_whole(const Expression& function, const Grid& grid, const ImplicitOptions& options,
+                             const RunControl& control) {
+    return Engine(function, grid, options, control).run();
+}
+
 }  // namespace implicit
 
 ImplicitResult mesh_implicit(const Expression& function, const Point3& low, const Point3& high,
@@ -163,7 +173,9 @@ ImplicitResult mesh_implicit(const Expression& function, const Point3& low, cons
                          "the box is too small for its distance from the origin, or too large or small for doubles: "
                          "move or scale the function");
     interval::require_sound_environment();
-    return implicit::Engine(function, *grid, options, control).run();
+    const std::vector<Expression> factors = implicit::factors_of(function);
+    if (!factors.empty()) return implicit::mesh_product(function, factors, *grid, options, control);
+    return implicit::certify_whole(function, *grid, options, control);
 }
 
 const char* name_of(ImplicitVerdict verdict) {

@@ -18,6 +18,7 @@
 #include "verify/implicit_complex.h"
 #include "verify/implicit_function.h"
 #include "verify/implicit_mesh.h"
+#include "verify/implicit_product.h"
 #include "verify/report.h"
 #include "verify/surface_in_w.h"
 
@@ -437,10 +438,8 @@ void add_to(ImplicitCheck& result, std::string problem) {
 
 /// Verifies W; a mesh whose vertices the certificate does not place on edges of T, or `any` mesh, is judged by what it
 /// is.
-MeshFindings check(const TriangleMesh& mesh, std::string_view text, std::string_view certificate_text, bool any,
-                   const RunControl& control, ImplicitCheck& result) {
-    const ImplicitFunction function(text);
-    const ImplicitCertificate certificate = read_certificate(certificate_text);
+MeshFindings check(const TriangleMesh& mesh, const ImplicitFunction& function, const ImplicitCertificate& certificate,
+                   bool any, bool either_way, const RunControl& control, ImplicitCheck& result) {
     const ImplicitComplex complex(certificate);
     Check check(function, complex, control, result);
     check.run();
@@ -449,6 +448,7 @@ MeshFindings check(const TriangleMesh& mesh, std::string_view text, std::string_
     if (result.violation_count == 0 && (genera != certificate.genera || loops != certificate.loops))
         add_to(result, "the certificate names other genera");
     result.triangles_checked = mesh.triangles.size();
+    result.isotopic = !certificate.clip;
     if (any || (certificate.vertex_edges.empty() && !mesh.triangles.empty())) {
         if (result.violation_count != 0) return {};
         if (certificate.clip) {
@@ -457,10 +457,106 @@ MeshFindings check(const TriangleMesh& mesh, std::string_view text, std::string_
         }
         return judge_mesh(mesh, complex, check.verified(), control);
     }
-    for (std::string& problem : check_mesh_on_complex(mesh, complex, certificate)) add_to(result, std::move(problem));
+    for (std::string& problem : check_mesh_on_complex(mesh, complex, certificate, either_way))
+        add_to(result, std::move(problem));
     MeshFindings on_edges;
     on_edges.faces_positive = true;
     return on_edges;
+}
+
+/// The part of a mesh between two vertices and two triangles. Errors: UnreadableCertificate where it is no mesh.
+TriangleMesh part_of(const TriangleMesh& mesh, std::size_t vertex, std::size_t vertex_end, std::size_t triangle,
+                     std::size_t triangle_end) {
+    TriangleMesh part;
+    if (vertex_end > mesh.positions.size() || triangle_end > mesh.triangles.size())
+        throw UnreadableCertificate("it is for a mesh with more vertices or triangles");
+    part.positions.assign(mesh.positions.begin() + static_cast<std::ptrdiff_t>(vertex),
+                          mesh.positions.begin() + static_cast<std::ptrdiff_t>(vertex_end));
+    for (; triangle < triangle_end; ++triangle) {
+        Triangle corners = mesh.triangles[triangle];
+        for (VertexId& v : corners) {
+            if (index_of(v) < vertex || index_of(v) >= vertex_end)
+                throw UnreadableCertificate("the meshes of its factors do not follow each other");
+            v = VertexId{static_cast<std::uint32_t>(index_of(v) - vertex)};
+        }
+        part.triangles.push_back(corners);
+    }
+    return part;
+}
+
+/// Every factor by its certificate on its part of the mesh; constants are not 0; no two factors have a common zero.
+void check_product(const TriangleMesh& mesh, const ImplicitFunction& function,
+                   const ImplicitProductCertificate& certificate, const RunControl& control, ImplicitCheck& result) {
+    const ImplicitFunction::Factors factors = function.factors();
+    if (factors.variable.size() != certificate.factors.size())
+        return add_to(result, "the function has another number of factors than the certificate");
+    const ImplicitCertificate& first = certificate.factors.front();
+    const BoxOfDoubles box = box_of(first);
+    std::vector<ImplicitFunction> functions;
+    for (const std::uint32_t step : factors.variable) functions.push_back(function.ending_at(step));
+    for (const std::uint32_t step : factors.constant) {
+        const ImplicitFunction constant = function.ending_at(step);
+        if (!Enclosures(constant).misses_zero(box)) add_to(result, "a constant factor is not proved to differ from 0");
+    }
+    std::vector<std::pair<int, int>> forms;
+    std::size_t vertex = 0, triangle = 0, surfaces = 0;
+    for (std::size_t k = 0; k < functions.size(); ++k) {
+        const ImplicitCertificate& own = certificate.factors[k];
+        if (own.first != first.first || own.count != first.count || own.exponent != first.exponent ||
+            own.clip != first.clip)
+            return add_to(result, "the factors are certified in different boxes");
+        if (certificate.vertices[k] < 0 || certificate.triangles[k] < 0)
+            return add_to(result, "the certificate counts vertices or triangles below 0");
+        const std::size_t vertex_end = vertex + static_cast<std::size_t>(certificate.vertices[k]),
+                          triangle_end = triangle + static_cast<std::size_t>(certificate.triangles[k]);
+        ImplicitCheck factor;
+        const MeshFindings found = check(part_of(mesh, vertex, vertex_end, triangle, triangle_end), functions[k], own,
+                                         false, true, control, factor);
+        const auto note = [&](const std::vector<std::string>& reasons) {
+            for (const std::string& reason : reasons) add_to(result, "factor " + std::to_string(k + 1) + ": " + reason);
+        };
+        note(factor.violations);
+        note(found.refuting);
+        note(found.hindering);
+        for (std::size_t c = 0; c < factor.genera.size(); ++c)
+            forms.emplace_back(factor.genera[c], own.clip ? factor.loops[c] : 0);
+        surfaces += factor.genera.empty() ? 0 : 1;
+        result.leaves_checked += factor.leaves_checked;
+        result.marks_checked += factor.marks_checked;
+        vertex = vertex_end;
+        triangle = triangle_end;
+    }
+    if (vertex != mesh.positions.size() || triangle != mesh.triangles.size())
+        add_to(result, "the mesh has vertices or triangles of no factor");
+    for (std::size_t i = 0; i < functions.size(); ++i) {
+        for (std::size_t j = i + 1; j < functions.size() && result.violation_count == 0; ++j) {
+            if (std::string problem = check_apart(functions[i], functions[j], box, control); !problem.empty())
+                add_to(result, std::move(problem));
+        }
+    }
+    std::sort(forms.begin(), forms.end());
+    for (const auto& [genus, loops] : forms) {
+        result.genera.push_back(genus);
+        if (first.clip) result.loops.push_back(loops);
+    }
+    result.triangles_checked = mesh.triangles.size();
+    result.isotopic = surfaces < 2 && !first.clip;
+}
+
+/// Verifies a mesh by a certificate of either kind.
+MeshFindings check(const TriangleMesh& mesh, std::string_view text, std::string_view certificate, bool any,
+                   const RunControl& control, ImplicitCheck& result) {
+    const ImplicitFunction function(text);
+    if (!is_product_certificate(certificate))
+        return check(mesh, function, read_certificate(certificate), any, false, control, result);
+    if (any) {
+        add_to(result, "the certificate of a product is for its own mesh");
+    } else {
+        check_product(mesh, function, read_product_certificate(certificate), control, result);
+    }
+    MeshFindings own;
+    own.faces_positive = true;
+    return own;
 }
 
 /// What cannot be read is a violation.
@@ -491,10 +587,11 @@ ImplicitCheck check_implicit(const TriangleMesh& mesh, std::string_view function
     });
     if (result.ok()) {
         result.verdict = result.genera.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
-        result.isotopic = result.loops.empty();
+        result.isotopic = result.isotopic || result.genera.empty();
     } else {
         result.genera.clear();
         result.loops.clear();
+        result.isotopic = false;
     }
     return result;
 }

@@ -73,6 +73,15 @@ public:
         return result;
     }
 
+    /// [item, ...], at least one.
+    template <class Item>
+    void list(const Item& item) {
+        expect('[');
+        do item();
+        while (accept(','));
+        expect(']');
+    }
+
     std::array<std::int64_t, 3> triple() {
         const std::vector<std::int64_t> values = integers();
         if (values.size() != 3) fail("expected three integers");
@@ -106,10 +115,9 @@ private:
     std::size_t at_ = 0;
 };
 
-}  // namespace
+constexpr std::string_view product_format = "certa implicit product";
 
-ImplicitCertificate read_certificate(std::string_view text) {
-    Reader in(text);
+ImplicitCertificate certificate_in(Reader& in) {
     ImplicitCertificate c;
     in.object({{"format",
                 [&] {
@@ -138,7 +146,37 @@ ImplicitCertificate read_certificate(std::string_view text) {
                 }},
                {"genera", [&] { c.genera = in.integers(); }}},
               "loops");
+    return c;
+}
+
+}  // namespace
+
+ImplicitCertificate read_certificate(std::string_view text) {
+    Reader in(text);
+    ImplicitCertificate certificate = certificate_in(in);
     in.end();
+    return certificate;
+}
+
+bool is_product_certificate(std::string_view text) { return text.substr(0, 64).find(product_format) != text.npos; }
+
+ImplicitProductCertificate read_product_certificate(std::string_view text) {
+    Reader in(text);
+    ImplicitProductCertificate c;
+    in.object({{"format",
+                [&] {
+                    if (in.string() != product_format) in.fail("another format");
+                }},
+               {"version",
+                [&] {
+                    if (in.integer() != 1) in.fail("another version");
+                }},
+               {"vertices", [&] { c.vertices = in.integers(); }},
+               {"triangles", [&] { c.triangles = in.integers(); }},
+               {"factors", [&] { in.list([&] { c.factors.push_back(certificate_in(in)); }); }}});
+    in.end();
+    if (c.vertices.size() != c.factors.size() || c.triangles.size() != c.factors.size())
+        in.fail("numbers of vertices and triangles are not one per factor");
     return c;
 }
 

@@ -24,6 +24,17 @@ struct ImplicitCertificate {
     std::vector<std::int64_t> loops;  ///< per component, in the order of genera; of a clipped surface only
 };
 
+/// Of a product: a certificate per factor, whose meshes follow each other in one mesh.
+struct ImplicitProductCertificate {
+    std::vector<std::int64_t> vertices, triangles;  ///< how many of the mesh belong to each factor
+    std::vector<ImplicitCertificate> factors;
+};
+
+/// Whether a text begins like the certificate of a product.
+bool is_product_certificate(std::string_view text);
+/// Errors: as read_certificate.
+ImplicitProductCertificate read_product_certificate(std::string_view text);
+
 /// Reads the JSON of docs/formats.md: an object of strings, integers, arrays of integers and one object of such.
 /// Errors: UnreadableCertificate, also for keys that are missing, unknown or given twice. `loops` makes a clipped one.
 ImplicitCertificate read_certificate(std::string_view text);

@@ -15,6 +15,19 @@ constexpr std::uint32_t leaf_bit = 0x80000000u;
 
 }  // namespace
 
+BoxOfDoubles box_of(const ImplicitCertificate& certificate) {
+    BoxOfDoubles box{};
+    for (std::size_t a = 0; a < 3; ++a) {
+        const std::int64_t first = certificate.first[a], last = first + certificate.count[a];
+        constexpr std::int64_t limit = std::int64_t{1} << 53;
+        if (first < -limit || last > limit || certificate.count[a] <= 0 || std::abs(certificate.exponent[a]) > 900)
+            refuse("the corners of the box are not doubles");
+        box.low[a] = std::ldexp(static_cast<double>(first), static_cast<int>(certificate.exponent[a]));
+        box.high[a] = std::ldexp(static_cast<double>(last), static_cast<int>(certificate.exponent[a]));
+    }
+    return box;
+}
+
 ImplicitComplex::ImplicitComplex(const ImplicitCertificate& certificate)
     : first_(certificate.first),
       count_(certificate.count),

@@ -29,6 +29,9 @@ struct ClaimedLeaf {
     bool is_critical() const { return sign != 0 && slope == 0; }
 };
 
+/// The box of a certificate. Errors: UnreadableCertificate where its corners are not doubles.
+BoxOfDoubles box_of(const ImplicitCertificate& certificate);
+
 /// Everything is built for the whole box, not only near the surface as the mesher does.
 /// Errors: UnreadableCertificate where the certificate describes no octree or names points that are none of T.
 class ImplicitComplex {

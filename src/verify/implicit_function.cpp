@@ -5,6 +5,8 @@
 // mean value do not suffice. Slower, but another argument.
 #include "verify/implicit_function.h"
 
+#include <cmath>
+
 namespace certa::verify {
 namespace {
 
@@ -285,6 +287,73 @@ bool Enclosures::on_parts(const BoxOfDoubles& box, int axis, int sign, int depth
         if (!repeated && !on_parts(child, axis, sign, depth + 1)) return false;
     }
     return true;
+}
+
+std::array<double, 4> Enclosures::guess(const std::array<double, 3>& place) {
+    for (std::size_t i = 0; i < 3; ++i) mpfi_set_d(place_[i], place[i]);
+    evaluate(place_, true);
+    const Values& at = values_[function_.result()];
+    if (!at.defined || !at.smooth) return {NAN, NAN, NAN, NAN};
+    return {mpfi_get_d(at.value), mpfi_get_d(at.slope[0]), mpfi_get_d(at.slope[1]), mpfi_get_d(at.slope[2])};
+}
+
+/// q = f - t g: q(c) + Q(box) (box - c), where Q is the enclosure of the gradient of q.
+bool Enclosures::combination_misses_zero(Enclosures& other, double t, const BoxOfDoubles& box) {
+    std::array<double, 3> center;
+    mpfi_set_ui(sum_, 0);
+    for (Enclosures* e : {this, &other}) {
+        for (std::size_t i = 0; i < 3; ++i) mpfi_interv_d(e->place_[i], box.low[i], box.high[i]);
+        e->evaluate(e->place_, true);
+        const Values& whole = e->values_[e->function_.result()];
+        if (!whole.defined || !whole.smooth) return false;
+    }
+    const Values &f = values_[function_.result()], &g = other.values_[other.function_.result()];
+    for (std::size_t i = 0; i < 3; ++i) {
+        center[i] = box.low[i] / 2 + box.high[i] / 2;
+        mpfi_mul_d(t_, g.slope[i], t);
+        mpfi_sub(t_, f.slope[i], t_);
+        mpfi_sub_d(u_, place_[i], center[i]);
+        mpfi_mul(t_, t_, u_);
+        mpfi_add(sum_, sum_, t_);
+    }
+    for (Enclosures* e : {this, &other}) {
+        for (std::size_t i = 0; i < 3; ++i) mpfi_set_d(e->place_[i], center[i]);
+        e->evaluate(e->place_, false);
+        if (!e->values_[e->function_.result()].defined) return false;
+    }
+    mpfi_mul_d(t_, g.value, t);
+    mpfi_sub(t_, f.value, t_);
+    mpfi_add(sum_, sum_, t_);
+    return sign_of(sum_) != 0;
+}
+
+ImplicitFunction::Factors ImplicitFunction::factors() const {
+    Factors factors;
+    std::vector<std::uint32_t> work{result_};
+    while (!work.empty()) {
+        const std::uint32_t at = work.back();
+        work.pop_back();
+        const Step& step = steps_[at];
+        if (step.depends == 0) {
+            factors.constant.push_back(at);
+        } else if (step.kind == Kind::product) {
+            work.push_back(step.b);
+            work.push_back(step.a);
+        } else if (step.kind == Kind::negative) {
+            work.push_back(step.a);
+        } else {
+            factors.variable.push_back(at);
+        }
+        if (factors.variable.size() + factors.constant.size() > 1000) return {};
+    }
+    return factors;
+}
+
+ImplicitFunction ImplicitFunction::ending_at(std::uint32_t step) const {
+    ImplicitFunction function;
+    function.steps_.assign(steps_.begin(), steps_.begin() + step + 1);
+    function.result_ = step;
+    return function;
 }
 
 }  // namespace certa::verify

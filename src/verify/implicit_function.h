@@ -55,9 +55,17 @@ public:
     explicit ImplicitFunction(std::string_view text);
     const std::vector<Step>& steps() const { return steps_; }
     std::uint32_t result() const { return result_; }
+    /// The factors of a product, from left to right, as steps: those that depend on a variable, and the others.
+    struct Factors {
+        std::vector<std::uint32_t> variable, constant;
+    };
+    Factors factors() const;
+    /// The function that ends with a step.
+    ImplicitFunction ending_at(std::uint32_t step) const;
 
 private:
     friend class FunctionReader;
+    ImplicitFunction() = default;
     std::vector<Step> steps_;
     std::uint32_t result_ = 0;
 };
@@ -78,6 +86,13 @@ public:
     bool proves_sign(const BoxOfDoubles& box, int sign) { return on_parts(box, -1, sign, 0); }
     /// Whether the derivative by this variable exists and has this sign on the whole box.
     bool proves_slope(const BoxOfDoubles& box, int axis, int sign) { return on_parts(box, axis, sign, 0); }
+
+    /// Value and gradient, NaN where undefined, of the middle of two enclosures in doubles: a guess.
+    std::array<double, 4> guess(const std::array<double, 3>& place);
+    /// Whether f has no zero on the box, by its enclosure or the mean value form.
+    bool misses_zero(const BoxOfDoubles& box) { return directly(box, -1, 1) || directly(box, -1, -1); }
+    /// Whether f - t g has no zero on the box, by the mean value form. `other` encloses g.
+    bool combination_misses_zero(Enclosures& other, double t, const BoxOfDoubles& box);
 
 private:
     struct Values {

@@ -14,7 +14,8 @@ namespace certa::verify {
 
 class MeshOnComplex {
 public:
-    MeshOnComplex(const TriangleMesh& mesh, const ImplicitComplex& complex) : mesh_(mesh), c_(complex) {}
+    MeshOnComplex(const TriangleMesh& mesh, const ImplicitComplex& complex, bool either_way)
+        : mesh_(mesh), c_(complex), either_way_(either_way), turned_(mesh.triangles.size(), 0) {}
 
     std::vector<std::string> run(const std::vector<std::int64_t>& vertex_edges) {
         if (vertex_edges.size() != 6 * mesh_.positions.size()) {
@@ -32,6 +33,7 @@ public:
             }
         }
         if (problems_.empty()) check_triangles();
+        if (problems_.empty() && either_way_) check_turns();
         return problems_;
     }
 
@@ -96,11 +98,27 @@ private:
     }
 
     /// The triangle with these vertices, if there is exactly one and it faces `positive`.
-    bool has(std::array<std::uint32_t, 3> key, std::uint32_t positive, const ByVertices& by_vertices) const {
+    bool has(std::array<std::uint32_t, 3> key, std::uint32_t positive, const ByVertices& by_vertices) {
         std::sort(key.begin(), key.end());
         const auto found = by_vertices.find(key);
         if (found == by_vertices.end() || found->second.size() != 1) return false;
-        return faces(mesh_.triangles[found->second[0]], positive);
+        const std::uint32_t t = found->second[0];
+        turned_[t] = faces(mesh_.triangles[t], positive) ? 0 : 1;
+        return either_way_ || turned_[t] == 0;
+    }
+
+    /// Triangles that share a vertex are all turned over, or none is.
+    void check_turns() {
+        std::vector<int> turn_at(mesh_.positions.size(), -1);
+        for (std::size_t t = 0; t < turned_.size(); ++t) {
+            for (const VertexId v : mesh_.triangles[t]) {
+                int& turn = turn_at[index_of(v)];
+                if (turn >= 0 && turn != turned_[t])
+                    return fail("triangle " + std::to_string(t + 1) +
+                                " of the mesh faces another way than its neighbour");
+                turn = turned_[t];
+            }
+        }
     }
 
     bool faces(const Triangle& triangle, std::uint32_t positive) const {
@@ -154,13 +172,15 @@ private:
 
     const TriangleMesh& mesh_;
     const ImplicitComplex& c_;
+    bool either_way_;
+    std::vector<char> turned_;  ///< per triangle: faces the negative side
     std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> vertex_of_;
     std::vector<std::string> problems_;
 };
 
 std::vector<std::string> check_mesh_on_complex(const TriangleMesh& mesh, const ImplicitComplex& complex,
-                                               const ImplicitCertificate& certificate) {
-    return MeshOnComplex(mesh, complex).run(certificate.vertex_edges);
+                                               const ImplicitCertificate& certificate, bool either_way) {
+    return MeshOnComplex(mesh, complex, either_way).run(certificate.vertex_edges);
 }
 
 }  // namespace certa::verify
