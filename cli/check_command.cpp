@@ -1,4 +1,4 @@
-// `certa check FILE [--against INPUT]`: decides what `conform` promises, on any file.
+// `certa check FILE [--against INPUT]`: decides what `conform` promises, on any file; surface meshes are passed on.
 // Without INPUT there is nothing to conform to: the mesh's own constraint triangles and edges stand in for it, and what
 // is decided is the Delaunay property and the form of the mesh.
 #include <certa/conforming.h>
@@ -7,6 +7,7 @@
 #include <memory>
 #include <numeric>
 
+#include "check_surface_command.h"
 #include "commands.h"
 #include "implicit_arguments.h"
 #include "interrupt.h"
@@ -20,8 +21,10 @@ struct CheckArguments {
     CommonFlags common;
     FileArgument file, against;
     ConformingCheckOptions options;
+    SurfaceCheckOptions surface;
     ConformOptions repairs;   // `repair` and `triangulate` of the run that made the mesh
     std::string certificate;  // of an implicit surface: --against is a function then
+    std::vector<double> box;  // of a function
 };
 
 /// The complex of the mesh's own constraints: every triangle a facet, every edge a segment; `mesh` is relabelled so.
@@ -73,10 +76,17 @@ ExitCode run_check(Session& session, const CheckArguments& arguments) {
     const MeshDocument document = session.read(arguments.file, "input");
     if (!arguments.certificate.empty())
         return check_implicit_mesh(session, document, {arguments.against.path}, arguments.certificate);
+    // What has no name of a mesh file is a function.
+    if (document.tetrahedra.empty() && arguments.against.given() && !arguments.against.format &&
+        !format_of(arguments.against.path))
+        return check_mesh_against_function(session, document, {arguments.against.path}, arguments.box);
+    if (!arguments.box.empty()) throw UsageError("--box is for surface meshes --against a function");
+    if (document.tetrahedra.empty() && arguments.against.given())
+        return check_surface_mesh(session, document, session.read(arguments.against, "against"), arguments.surface);
     if (document.tetrahedra.empty())
         throw UsageError(arguments.file.path +
-                         " has no tetrahedra: `check` verifies tetrahedral meshes; `certa info` "
-                         "describes surfaces and complexes");
+                         " has no tetrahedra: a surface mesh is checked with --against and the surface that it stands "
+                         "for; `certa info` describes surfaces and complexes");
     TetMesh mesh = make_tet_mesh(document);
     const bool alone = !arguments.against.given();
     const PiecewiseLinearComplex complex = alone ? own_complex(mesh) : read_against(session, arguments);
@@ -109,18 +119,27 @@ ExitCode run_check(Session& session, const CheckArguments& arguments) {
 
 void add_check_command(CLI::App& app, Action& action) {
     auto arguments = std::make_shared<CheckArguments>();
-    CLI::App* command = app.add_subcommand("check", "Verify what `conform` promises, exactly, on any tetrahedral mesh");
-    command->footer("Example:\n  certa check part.mesh --against part.off");
-    command->add_option("FILE", arguments->file.path, "tetrahedral mesh (-: standard input)")->required();
+    CLI::App* command = app.add_subcommand(
+        "check", "Verify what `conform` promises on any tetrahedral mesh, what `remesh` promises on any surface mesh");
+    command->footer(
+        "Examples:\n  certa check part.mesh --against part.off\n"
+        "  certa check coarse.obj --against scan.ply --error 0.1%");
+    command->add_option("FILE", arguments->file.path, "tetrahedral or surface mesh (-: standard input)")->required();
     command
         ->add_option("--against", arguments->against.path,
-                     "the surface mesh or complex that it was made from; with --certificate the function")
+                     "the surface mesh or complex that it was made from or stands for; with --certificate the function")
         ->type_name("INPUT");
     command->add_option("--certificate", arguments->certificate, "of `implicit`: verify a triangle mesh by it")
         ->type_name("FILE");
+    command
+        ->add_option("--box", arguments->box,
+                     "against a function: low and high corner (default: the mesh's box, enlarged by about a sixth)")
+        ->expected(6)
+        ->type_name("X0 Y0 Z0 X1 Y1 Z1");
     add_format_option(*command, "--input-format", arguments->file);
     add_format_option(*command, "--against-format", arguments->against);
     add_options(*command, frontend::conforming_check_options(), arguments->options);
+    add_options(*command, frontend::surface_check_options(), arguments->surface);
     command->add_flag("--repair", arguments->repairs.repair, "the mesh was made with --repair");
     command->add_flag("--triangulate", arguments->repairs.triangulate, "the mesh was made with --triangulate");
     add_common_flags(*command, arguments->common);

@@ -1,0 +1,18 @@
+#pragma once
+// `certa check` for surface meshes.
+#include <certa/surface_check.h>
+
+#include "session.h"
+
+namespace certa::cli {
+
+/// Checks the polygons of one document against those of another; says and reports what was found.
+ExitCode check_surface_mesh(Session& session, const MeshDocument& document, const MeshDocument& against,
+                            SurfaceCheckOptions options);
+
+/// The polygons of a document, without isolated points and segments. Errors: UsageError where there are none.
+PolygonMesh polygons_of(const MeshDocument& document, const std::string& name);
+
+Json to_json(const SurfaceDistance& distance);
+
+}  // namespace certa::cli
