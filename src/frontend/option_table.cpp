@@ -335,6 +335,10 @@ template void set_option(const Option<RemeshOptions>&, RemeshOptions&, std::stri
 template std::string value_of(const Option<RemeshOptions>&, const RemeshOptions&);
 template std::string value_name_of(const Option<RemeshOptions>&);
 template std::string help_of(const Option<RemeshOptions>&);
+template void set_option(const Option<SurfaceCheckOptions>&, SurfaceCheckOptions&, std::string_view);
+template std::string value_of(const Option<SurfaceCheckOptions>&, const SurfaceCheckOptions&);
+template std::string value_name_of(const Option<SurfaceCheckOptions>&);
+template std::string help_of(const Option<SurfaceCheckOptions>&);
 template void set_option(const Option<OutputOptions>&, OutputOptions&, std::string_view);
 template std::string value_of(const Option<OutputOptions>&, const OutputOptions&);
 template std::string value_name_of(const Option<OutputOptions>&);
