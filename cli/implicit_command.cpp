@@ -6,13 +6,16 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <memory>
 
 #include "commands.h"
 #include "implicit_arguments.h"
 #include "interrupt.h"
+#include "machine.h"
 #include "report.h"
 #include "session.h"
 
@@ -26,9 +29,38 @@ struct ImplicitArguments {
     std::vector<double> box{-2, -2, -2, 2, 2, 2};
     ImplicitOptions options;
     frontend::OutputOptions output_options;
-    std::string certificate;
+    std::string certificate, level;
     bool no_verify = false;
 };
+
+/// The text of `function - level`: the last statement gets a name, if it has none, that one more statement uses.
+std::string with_level(std::string text, const std::string& level) {
+    std::size_t start = text.rfind("\xEF\xBB\xBF", 0) == 0 ? 3 : 0;
+    char last = 0;  // of the statement so far
+    int depth = 0;
+    for (std::size_t i = start; i < text.size(); ++i) {
+        const char c = text[i];
+        if (c == '#') {
+            while (i + 1 < text.size() && text[i + 1] != '\n' && text[i + 1] != '\r') ++i;
+        } else if (depth == 0 && (c == ';' || c == '\n' || c == '\r')) {
+            if (last != 0 && (c == ';' || std::strchr("+-*/^=", last) == nullptr)) last = 0;
+        } else if (std::isspace(static_cast<unsigned char>(c)) == 0) {
+            if (last == 0) start = i;
+            depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+            last = c;
+        }
+    }
+    std::size_t end = start;
+    while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_')) ++end;
+    std::string name = text.substr(start, end - start);
+    while (end < text.size() && (text[end] == ' ' || text[end] == '\t')) ++end;
+    if (name.empty() || end == text.size() || text[end] != '=') {
+        name = "surface";
+        while (text.find(name) != std::string::npos) name += "_";
+        text.insert(start, name + " = ");
+    }
+    return text + "\n" + name + " - (" + level + ")\n";
+}
 
 std::string place_text(const Point3& p) {
     return "(" + frontend::text_of(p.x) + ", " + frontend::text_of(p.y) + ", " + frontend::text_of(p.z) + ")";
@@ -52,7 +84,7 @@ const char* advice(ImplicitObstacle::Reason reason) {
         case ImplicitObstacle::Reason::precision:
             return "the cells have become as small as doubles or --max-depth allow";
         case ImplicitObstacle::Reason::budget:
-            return "--max-cells or --time was reached; the boxes are where it would go on";
+            return "--max-cells, --time or the memory of this machine was reached; the boxes are where it would go on";
         default:
             return "interrupted";
     }
@@ -62,6 +94,11 @@ void report_result(Session& session, const ImplicitResult& result, bool clipped)
     Json& report = session.report();
     report["outcome"] = name_of(result.outcome);
     report["verdict"] = name_of(result.verdict);
+    const bool decided = result.verdict != ImplicitVerdict::undecided;
+    report["status"] = {{"type", decided ? "certified" : "undecided"},
+                        {"isotopy", result.isotopic ? "certified"
+                                    : decided       ? "not claimed"
+                                                    : "undecided"}};
     report["box"] = {{"low", to_json(result.low)}, {"high", to_json(result.high)}};
     report["mesh"] = {{"vertices", result.mesh.positions.size()}, {"triangles", result.mesh.triangles.size()}};
     Json components = Json::array();
@@ -82,7 +119,18 @@ void report_result(Session& session, const ImplicitResult& result, bool clipped)
     report["obstacle_count"] = result.obstacle_count;
 }
 
-ExitCode end_undecided(Session& session, const ImplicitResult& result) {
+MeshDocument document_of(const ImplicitResult& result, Format format);
+
+/// The guess that --uncertified asks for, labelled as one.
+void write_guess(Session& session, const ImplicitArguments& arguments, const ImplicitResult& result) {
+    const FileArgument& output = arguments.output;
+    MeshDocument document = document_of(result, output.format ? *output.format : *format_of(output.path));
+    document.remark = std::string("NOT CERTIFIED: a guess; ") + name_of(result.obstacles.front().reason);
+    session.say("NOT CERTIFIED: what is written is a guess");
+    session.write(output, document, arguments.output_options);
+}
+
+ExitCode end_undecided(Session& session, const ImplicitArguments& arguments, const ImplicitResult& result) {
     if (result.outcome == Outcome::cancelled || interrupt_flag()) return ExitCode::interrupted;
     const ImplicitObstacle& first = result.obstacles.front();
     session.say(std::string("UNDECIDED (") + name_of(first.reason) + "): " + advice(first.reason));
@@ -92,6 +140,7 @@ ExitCode end_undecided(Session& session, const ImplicitResult& result) {
         session.say("  box " + place_text(result.obstacles[i].low) + " to " + place_text(result.obstacles[i].high));
     if (result.obstacle_count > shown)
         session.say("  ... " + counted(result.obstacle_count - shown, "more box", "more boxes"));
+    if (!result.mesh.triangles.empty() && arguments.output.given()) write_guess(session, arguments, result);
     return ExitCode::unable;
 }
 
@@ -110,8 +159,9 @@ void say_result(Session& session, const ImplicitResult& result) {
     for (std::size_t i = 0; i < result.components.size() && i < 20; ++i)
         genera += (i == 0 ? "" : ", ") + form_of(result.components[i].genus, result.components[i].loops);
     if (result.components.size() > 20) genera += ", ...";
-    session.say("CERTIFIED" + box + ": " + counted(result.components.size(), "component") + " of genus " + genera +
-                "; " + counted(result.mesh.positions.size(), "vertex", "vertices") + ", " +
+    session.say(std::string(result.isotopic ? "CERTIFIED" : "CERTIFIED (type; isotopy is not claimed)") + box + ": " +
+                counted(result.components.size(), "component") + " of genus " + genera + "; " +
+                counted(result.mesh.positions.size(), "vertex", "vertices") + ", " +
                 counted(result.mesh.triangles.size(), "triangle"));
     session.detail("  " + counted(result.statistics.leaves, "leaf", "leaves") + ", " +
                    counted(result.statistics.clusters, "critical cluster") + ", " +
@@ -121,6 +171,7 @@ void say_result(Session& session, const ImplicitResult& result) {
 /// What a check proved, by name.
 std::vector<std::string> promises_of(const ImplicitCheck& check) {
     if (check.isotopic) return {"isotopic"};
+    if (check.loops.empty()) return {"components", "genera"};
     return {"components", "genera", "boundary_loops"};
 }
 
@@ -161,9 +212,16 @@ void require_surface_format(const Session& session, const FileArgument& output) 
 ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
     if (arguments.output.given()) require_surface_format(session, arguments.output);
     if (!arguments.certificate.empty()) session.require_writable({arguments.certificate, Format::off});
-    const FunctionArgument::Source source = arguments.function.read();
+    FunctionArgument::Source source = arguments.function.read();
     session.report()["input"] = {{"name", source.name}};
-    const Expression function = parse_expression(source.text, source.name);
+    Expression function = parse_expression(source.text, source.name);
+    if (!arguments.level.empty()) {
+        frontend::parse_number("--level", arguments.level);
+        source.text = with_level(source.text, arguments.level);
+        function = parse_expression(source.text, source.name);
+        session.report()["function"] = source.text;
+        session.say("for `check --against`, the function is\n" + source.text);
+    }
     Json& options = session.report()["options"];
     for (const auto& option : frontend::implicit_options())
         options[std::string(option.name)] = frontend::value_of(option, arguments.options);
@@ -171,13 +229,14 @@ ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
     options["verify"] = !arguments.no_verify;
     const auto& b = arguments.box;
     ImplicitOptions settings = arguments.options;
+    settings.memory_bytes = available_memory();
     settings.certificate = !arguments.no_verify || !arguments.certificate.empty();
     const ImplicitResult result = session.timed("implicit", [&] {
         const GracefulScope graceful;
         return mesh_implicit(function, {b[0], b[1], b[2]}, {b[3], b[4], b[5]}, settings, session.control());
     });
     report_result(session, result, settings.clip);
-    if (result.verdict == ImplicitVerdict::undecided) return end_undecided(session, result);
+    if (result.verdict == ImplicitVerdict::undecided) return end_undecided(session, arguments, result);
     say_result(session, result);
     if (!arguments.no_verify) verify(session, result, source.text);
     if (interrupt_flag()) return ExitCode::interrupted;
@@ -262,7 +321,7 @@ ExitCode check_implicit_mesh(Session& session, const MeshDocument& document, con
         genera += (i == 0 ? " of genus " : ", ") + form_of(check.genera[i], check.loops.empty() ? 0 : check.loops[i]);
     session.say("verified: " +
                 std::string(check.isotopic ? "isotopic to the zero set; "
-                                           : "components, genera and loops are those of the zero set; ") +
+                                           : "components and their type are those of the zero set; ") +
                 counted(check.genera.size(), "component") + genera + "; " +
                 counted(check.leaves_checked, "leaf", "leaves") + ", " + counted(check.marks_checked, "mark") + ", " +
                 counted(check.triangles_checked, "triangle") + " checked");
@@ -291,6 +350,7 @@ void add_implicit_command(CLI::App& app, Action& action) {
         ->expected(6)
         ->type_name("X0 Y0 Z0 X1 Y1 Z1");
     add_options(*command, frontend::implicit_options(), arguments->options);
+    command->add_option("--level", arguments->level, "mesh {function = C} instead of {function = 0}")->type_name("C");
     command->add_option("--certificate", arguments->certificate, "write the certificate, JSON, for `check`")
         ->type_name("FILE");
     command->add_flag("--no-verify", arguments->no_verify, "do not run the independent checker before writing");

@@ -124,13 +124,19 @@ struct ImplicitObstacle {
         tangent_to_box,  ///< of a box that clips: the surface is tangent to a face or an edge of it, or meets a corner
         undefined,       ///< f cannot be shown to be defined there
         precision,       ///< the cell is as small as doubles allow
-        budget,          ///< max_cells or time_seconds
+        budget,          ///< max_cells, time_seconds or memory_bytes
         cancelled,
     };
     Reason reason{};
     Point3 low, high;
 };
 const char* name_of(ImplicitObstacle::Reason reason);
+
+enum class ImplicitEngine : std::uint8_t {
+    growth,            ///< this project's: W by free growth, with a certificate
+    plantinga_vegter,  ///< subdivision by small normal variation: the same claim by another theorem, no certificate
+};
+const char* name_of(ImplicitEngine engine);
 
 struct ImplicitOptions {
     /// Cells of the octree; about 100 bytes each, 2000 near the surface.
@@ -140,6 +146,16 @@ struct ImplicitOptions {
     /// The mesh is refined and simplified to this distance from the zero set, as sampled; closed surfaces only. Without
     /// it: the raw mesh of the triangulation, as fine as the proof needs it and no finer.
     std::optional<double> error = std::nullopt;
+    /// A length that mesh and zero set are to be proved to be within of each other, both ways; `error` follows from it.
+    /// Not of products, nor where the box clips.
+    std::optional<double> hausdorff = std::nullopt;
+    ImplicitEngine engine = ImplicitEngine::growth;
+    /// What may be taken, as estimated before every round; what is claimed is then the same or `budget`. Empty: no
+    /// limit.
+    std::optional<std::uint64_t> memory_bytes = std::nullopt;
+    /// Where nothing can be certified, ImplicitResult::mesh is the best guess all the same, unless a million leaves
+    /// are open; `verdict` says that nothing is claimed.
+    bool uncertified = false;
     /// Seconds after which no further round begins; the result then depends on the machine. Empty: no limit.
     std::optional<std::uint64_t> time_seconds = std::nullopt;
     /// The surface may meet the box: what lies in the box is meshed, with loops in the box's boundary. Components,
@@ -157,6 +173,7 @@ struct ImplicitComponent {
 };
 
 struct ImplicitStatistics {
+    std::uint64_t evaluations = 0;                         ///< enclosures of f over boxes, with or without derivatives
     std::uint64_t cells = 0, leaves = 0, open_leaves = 0;  ///< open: no sign of f is proved on the leaf
     std::uint64_t clusters = 0, rounds = 0, tetrahedra = 0;
 };
@@ -173,6 +190,7 @@ struct ImplicitResult {
     std::vector<ImplicitComponent> components;
     std::vector<ImplicitObstacle> obstacles;  ///< the first 1000
     std::size_t obstacle_count = 0;
+    std::optional<double> hausdorff;  ///< proved: mesh and zero set are within this length of each other
     Point3 low, high;  ///< the box of the proof: that of the caller, enlarged by at most 2^-20 of its size
     ImplicitStatistics statistics;
     std::string certificate;  ///< JSON (docs/formats.md) for check_implicit; empty unless asked for and decided
@@ -198,9 +216,10 @@ struct ImplicitCheck {
     std::vector<std::string> violations;  ///< at most 100 are kept; what is claimed and not proved, with its place
     std::size_t violation_count = 0;
     ImplicitVerdict verdict = ImplicitVerdict::undecided;  ///< proved by the check: certified, empty; else undecided
-    bool isotopic = false;    ///< proved: the mesh is isotopic to the zero set; else components, genera and loops agree
-    std::vector<int> genera;  ///< per component of the mesh, sorted
-    std::vector<int> loops;   ///< of a clipped surface, in the order of genera: boundary loops
+    bool isotopic = false;  ///< proved: the mesh is isotopic to the zero set; else components, genera and loops agree
+    std::optional<double> hausdorff;  ///< proved as the certificate claims it: a bound on the distance, both ways
+    std::vector<int> genera;          ///< per component of the mesh, sorted
+    std::vector<int> loops;           ///< of a clipped surface, in the order of genera: boundary loops
     std::size_t leaves_checked = 0, marks_checked = 0, triangles_checked = 0;
     bool ok() const { return violation_count == 0; }
 };

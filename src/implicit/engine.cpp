@@ -33,7 +33,10 @@ public:
           field_(tape_),
           control_(control),
           certificate_(options.certificate),
-          error_(options.error) {
+          error_(options.error),
+          hausdorff_(options.hausdorff),
+          memory_bytes_(options.memory_bytes),
+          uncertified_(options.uncertified) {
         limits_.max_cells = options.max_cells.value_or(std::uint64_t{1} << 31);
         const auto deepest = static_cast<std::uint64_t>(tree_.max_depth());
         limits_.max_depth = static_cast<int>(std::min(options.max_depth.value_or(deepest), deepest));
@@ -54,6 +57,7 @@ public:
         for (;;) {
             ++result_.statistics.rounds;
             if (control_.cancelled()) return stop({ImplicitObstacle::Reason::cancelled, {}});
+            if (is_too_large()) return stop({ImplicitObstacle::Reason::budget, {}});
             control_.report("certify", 1.0 - 1.0 / static_cast<double>(1 + result_.statistics.rounds));
             if (triangulation) {
                 Triangulation next(tree_, field_, signs_, *triangulation, split);
@@ -75,6 +79,15 @@ public:
     }
 
 private:
+    /// Bytes of the next round, from peaks measured on large surfaces: cells and their corners, and for every open leaf
+    /// the tetrahedra, stars and links of two leaves.
+    bool is_too_large() const {
+        if (!memory_bytes_) return false;
+        std::uint64_t open = 0;
+        for (const Cell& cell : tree_.cells()) open += cell.is_leaf() && cell.known.sign == 0 ? 1 : 0;
+        return 200 * tree_.cells().size() + 8000 * open > *memory_bytes_;
+    }
+
     void count() {
         result_.statistics.cells = tree_.cells().size();
         for (const std::uint32_t leaf : tree_.leaves()) {
@@ -97,7 +110,19 @@ private:
         }
         result_.obstacle_count = obstacle.leaves.size();
         if (obstacle.leaves.empty()) result_.obstacles.push_back({obstacle.reason, result_.low, result_.high});
+        if (uncertified_ && result_.outcome != Outcome::cancelled && result_.statistics.open_leaves < 1'000'000)
+            guess_mesh();
         return std::move(result_);
+    }
+
+    /// Where f seems to change its sign on the octree as it stands.
+    void guess_mesh() {
+        const Triangulation triangulation(tree_, field_, signs_);
+        Findings nothing;
+        nothing.component_of_point.assign(triangulation.point_count(), 0);
+        Surface surface = build_surface(tree_, triangulation, nothing, field_);
+        result_.mesh = std::move(surface.mesh);
+        result_.triangle_components = std::move(surface.component_of_triangle);
     }
 
     void conclude(const Triangulation& triangulation, const Growth& growth, const Findings& findings) {
@@ -116,13 +141,16 @@ private:
             result_.components.back().degree = component.degree8 / 8;
             if (component.parent != none) result_.components.back().parent = component.parent;
         }
-        if (error_ && !tree_.is_clipped() && result_.verdict == ImplicitVerdict::certified) {
+        if ((error_ || hausdorff_) && !tree_.is_clipped() && result_.verdict == ImplicitVerdict::certified) {
             const Frontier frontier(tree_, triangulation, growth);
-            surface = simplify(surface, &frontier, tape_, {*error_}, control_);
+            if (hausdorff_)
+                result_.hausdorff = simplify_to_distance(surface, frontier, tape_, *hausdorff_, control_);
+            else
+                surface = simplify(surface, &frontier, tape_, {*error_}, control_);
         }
         if (certificate_)
-            result_.certificate =
-                write_certificate(function_, tree_, triangulation, growth, surface, result_.components);
+            result_.certificate = write_certificate(function_, tree_, triangulation, growth, surface,
+                                                    result_.components, result_.hausdorff);
         result_.mesh = std::move(surface.mesh);
         result_.triangle_components = std::move(surface.component_of_triangle);
     }
@@ -133,7 +161,9 @@ private:
     Field field_;
     const RunControl& control_;
     bool certificate_;
-    std::optional<double> error_;
+    std::optional<double> error_, hausdorff_;
+    std::optional<std::uint64_t> memory_bytes_;
+    bool uncertified_;
     Limits limits_;
     std::vector<Triangulation::PointSign> signs_;
     ImplicitResult result_;
@@ -150,32 +180,48 @@ ImplicitResult certify_whole(const Expression& function, const Grid& grid, const
     return Engine(function, grid, options, control).run();
 }
 
+Grid checked_grid(const Point3& low, const Point3& high) {
+    const double sides[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
+    for (const double side : sides) {
+        if (!std::isfinite(side) || !(side > 0))
+            refuse(DefectKind::option_out_of_range,
+                   "the box must have finite corners, and its high corner must be above its low one on every axis");
+    }
+    const auto grid = Grid::around(low, high);
+    if (!grid)
+        refuse(DefectKind::coordinate_out_of_range,
+               "the box is too small for its distance from the origin, or too large or small for doubles: "
+               "move or scale the function");
+    return *grid;
+}
+
 }  // namespace implicit
 
 ImplicitResult mesh_implicit(const Expression& function, const Point3& low, const Point3& high,
                              const ImplicitOptions& options, const RunControl& control) {
-    const double sides[3] = {high.x - low.x, high.y - low.y, high.z - low.z};
-    for (const double side : sides) {
-        if (!std::isfinite(side) || !(side > 0))
-            implicit::refuse(
-                DefectKind::option_out_of_range,
-                "the box must have finite corners, and its high corner must be above its low one on every axis");
-    }
     if (options.max_depth && *options.max_depth < 1)
         implicit::refuse(DefectKind::option_out_of_range, "max_depth must be at least 1");
     if (options.time_seconds && *options.time_seconds < 1)
         implicit::refuse(DefectKind::option_out_of_range, "time_seconds must be at least 1");
     if (options.max_cells && *options.max_cells < 64)
         implicit::refuse(DefectKind::option_out_of_range, "max_cells must be at least 64");
-    const auto grid = implicit::Grid::around(low, high);
-    if (!grid)
-        implicit::refuse(DefectKind::coordinate_out_of_range,
-                         "the box is too small for its distance from the origin, or too large or small for doubles: "
-                         "move or scale the function");
+    for (const std::optional<double>& length : {options.error, options.hausdorff}) {
+        if (length && (!(*length > 0) || !std::isfinite(*length)))
+            implicit::refuse(DefectKind::option_out_of_range, "error and hausdorff must be lengths above 0");
+    }
+    if (options.hausdorff && options.clip)
+        implicit::refuse(DefectKind::option_out_of_range, "no distance is proved of surfaces that the box clips");
+    const implicit::Grid grid = implicit::checked_grid(low, high);
     interval::require_sound_environment();
     const std::vector<Expression> factors = implicit::factors_of(function);
-    if (!factors.empty()) return implicit::mesh_product(function, factors, *grid, options, control);
-    return implicit::certify_whole(function, *grid, options, control);
+    if (!factors.empty() && !options.hausdorff) {
+        ImplicitOptions certain = options;
+        certain.uncertified = false;
+        ImplicitResult result = implicit::mesh_product(function, factors, grid, certain, control);
+        const bool guess = options.uncertified && result.outcome != Outcome::cancelled;
+        if (result.verdict != ImplicitVerdict::undecided || !guess) return result;
+    }
+    return implicit::certify_whole(function, grid, options, control);
 }
 
 const char* name_of(ImplicitVerdict verdict) {

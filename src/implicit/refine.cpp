@@ -216,21 +216,31 @@ private:
         if (depth >= 3 && !tree_.is_clipped()) {
             for (const std::uint32_t id : open) {
                 const Cell& cell = tree_.cell(id);
-                if (cell.known.sign == 0 && tree_.touches_boundary(cell) && crosses_box(tree_, cell, field_))
-                    return Obstacle{Reason::meets_box, {id}};
+                if (cell.known.sign != 0 || !tree_.touches_boundary(cell) || !crosses_box(tree_, cell, field_))
+                    continue;
+                // What is singular too is so in any box: that is said first.
+                const auto singular = stuck_cell(most_promising(open));
+                if (singular && reason_of(tree_, *singular, field_) == Reason::singular)
+                    return Obstacle{Reason::singular, {split_down_to(*singular)}};
+                return Obstacle{Reason::meets_box, {id}};
             }
         }
         if (depth >= 6) {
             const std::uint32_t id = most_promising(open);
-            const Cell& cell = tree_.cell(id);
-            const double size = interval::width(tree_.region_of(cell)[0]);
-            const GridPoint start = tree_.is_clipped() ? foot_of(tree_, cell) : tree_.center_of(cell);
-            const Point3 guess = towards_singular(tree_.grid().place(start), size, tree_.free_axes(cell), field_);
-            std::optional<Cell> found = open_cell_at(tree_, guess, limits_.max_depth, field_);
-            if (!found) found = probe(tree_, cell, limits_.max_depth, field_);
+            std::optional<Cell> found = stuck_cell(id);
+            if (!found) found = probe(tree_, tree_.cell(id), limits_.max_depth, field_);
             if (found) return Obstacle{reason_of(tree_, *found, field_), {split_down_to(*found)}};
         }
         return std::nullopt;
+    }
+
+    /// A smallest cell that stays open, where an iteration from a leaf leads.
+    std::optional<Cell> stuck_cell(std::uint32_t id) {
+        const Cell& cell = tree_.cell(id);
+        const double size = interval::width(tree_.region_of(cell)[0]);
+        const GridPoint start = tree_.is_clipped() ? foot_of(tree_, cell) : tree_.center_of(cell);
+        const Point3 guess = towards_singular(tree_.grid().place(start), size, tree_.free_axes(cell), field_);
+        return open_cell_at(tree_, guess, limits_.max_depth, field_);
     }
 
     /// Splits until the cell is a leaf of the tree. All of this is one chain: nothing else is certified any more.
