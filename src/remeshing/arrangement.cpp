@@ -47,6 +47,12 @@ private:
     void cross_in_face(Index face, std::span<const Piece> pieces);
     Index add_crossing_node(Index face, const Piece& a, const Piece& b);
     void end_lines_on_features();
+    void start_at_vertex(Index line);
+    Index wedge_of(Index face, Index vertex) const {
+        Index h = 3 * face;
+        while (mesh_.start_of(h) != vertex) ++h;
+        return mesh_.wedges[h];
+    }
     void trim();
     void add_line_edges();
     void add_curves();
@@ -175,13 +181,40 @@ void GraphBuilder::cross_in_face(Index face, std::span<const Piece> pieces) {
     }
 }
 
+/// A line from the tip of a crease: the tip is its first node.
+void GraphBuilder::start_at_vertex(Index l) {
+    const Line& line = network_.lines()[l];
+    const Index vertex = network_.crossing(line.crossings.front()).vertex;
+    GraphNode node;
+    node.kind = VertexKind::corner;
+    node.point = mesh_.points[vertex];
+    node.place.face = line.faces.front();
+    for (Index i = 0; i < 3; ++i) {
+        const Index h = 3 * node.place.face + i;
+        node.place.weights[i] = mesh_.start_of(h) == vertex ? 1.0 : 0.0;
+    }
+    for (Index c = mesh_.wedge_first[wedge_of(node.place.face, vertex)]; c != no_index; c = mesh_.next_corner(c))
+        for (const Index h : {c, previous_of(c)})
+            if (mesh_.is_feature(h)) node.curve = mesh_.edge_curves[mesh_.edges[h]];
+    const Index number = static_cast<Index>(graph_.nodes.size());
+    graph_.nodes.push_back(std::move(node));
+    vertex_nodes_[vertex] = number;
+    node_lines_.push_back({});
+    node_lines_.back().line[0] = l;
+    node_lines_.back().vertex = vertex;
+    stops_[l].insert(stops_[l].begin(), {0.0, number});
+}
+
 void GraphBuilder::end_lines_on_features() {
+    vertex_nodes_.assign(mesh_.points.size(), no_index);
     for (Index l = 0; l < network_.lines().size(); ++l) {
         const Line& line = network_.lines()[l];
         if (line.faces.empty() || line.closed) continue;
+        if (network_.crossing(line.crossings.front()).vertex != no_index) start_at_vertex(l);
         for (const bool start : {true, false}) {
             const Index c = start ? line.crossings.front() : line.crossings.back();
-            const Index e = network_.crossing(c).edge, curve = mesh_.edge_curves[e];
+            const Index e = network_.crossing(c).edge;
+            const Index curve = e == no_index ? no_index : mesh_.edge_curves[e];
             if (curve == no_index) continue;
             const Index face = start ? line.faces.front() : line.faces.back();
             GraphNode node;
@@ -366,7 +399,6 @@ void GraphBuilder::add_curve(Index number) {
 }
 
 void GraphBuilder::add_curves() {
-    vertex_nodes_.assign(mesh_.points.size(), no_index);
     curve_arms_.resize(graph_.nodes.size());
     for (Index c = 0; c < mesh_.curves.size(); ++c) add_curve(c);
 }
@@ -391,8 +423,11 @@ void GraphBuilder::attach_at_vertex(Index vertex, Index node) {
             }
     };
     const Index first = c;
+    const Index line = line_arms_[node][0];
+    const Index line_face = line == no_index ? no_index : network_.lines()[graph_.edges[line / 2].line].faces.front();
     do {
         add(mesh_.edges[c]);
+        if (c / 3 == line_face) arms.push_back(line);
         const Index left = previous_of(c);
         if (mesh_.opposites[left] == no_index) {
             add(mesh_.edges[left]);
@@ -400,7 +435,7 @@ void GraphBuilder::attach_at_vertex(Index vertex, Index node) {
         }
         c = mesh_.opposites[left];
     } while (c != first);
-    CERTA_ASSERT(arms.size() == curve_arms_[node].size());
+    CERTA_ASSERT(arms.size() == curve_arms_[node].size() + (line == no_index ? 0 : 1));
 }
 
 void GraphBuilder::attach_arms() {

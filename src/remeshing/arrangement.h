@@ -45,14 +45,6 @@ struct ArrangementRule {
     double crease_error = 0.0;  ///< sagitta that a straight side may have over a feature curve
 };
 
-/// Where a face of the graph is no disk.
-struct BadRegion {
-    Index component = no_index;  ///< of the work mesh
-    Point3 place;
-    Index face = no_index;  ///< a face of the work mesh in it
-    std::int64_t euler_characteristic = 0;
-};
-
 /// Nodes and edges: crossings of the two families, of lines with features, corners, and as many points of features as
 /// their curvature asks for. Ends that dangle are trimmed, nodes without a turn are dropped.
 Graph build_graph(const Network& network, const ArrangementRule& rule);

@@ -5,7 +5,6 @@
 // marked edges meet, or two meet at a sharp turn; chains between corners are curves, closed chains too.
 #include <algorithm>
 #include <numbers>
-#include <unordered_set>
 
 #include "core/union_find.h"
 #include "remeshing/work_mesh.h"
@@ -21,11 +20,6 @@ Point3 normal_of(const WorkMesh& mesh, Index f) {
 }
 
 std::vector<Mark> mark_edges(const WorkMesh& mesh, const RemeshOptions& options) {
-    std::unordered_set<std::uint64_t> tagged;
-    const auto key = [](Index a, Index b) {
-        return (static_cast<std::uint64_t>(std::min(a, b)) << 32) | std::max(a, b);
-    };
-    for (const Edge& edge : options.features) tagged.insert(key(index_of(edge[0]), index_of(edge[1])));
     std::vector<Mark> marks(mesh.edge_halfedges.size(), Mark::none);
     const double limit = std::cos(options.feature_angle_radians);
     for (std::size_t e = 0; e < marks.size(); ++e) {
@@ -35,7 +29,7 @@ std::vector<Mark> mark_edges(const WorkMesh& mesh, const RemeshOptions& options)
             continue;
         }
         const Index a = mesh.point_sources[mesh.start_of(h)], b = mesh.point_sources[mesh.end_of(h)];
-        if (!tagged.empty() && tagged.contains(key(a, b))) {
+        if (!mesh.tagged.empty() && mesh.tagged.contains(pair_key(a, b))) {
             marks[e] = Mark::tagged;
             continue;
         }

@@ -202,6 +202,28 @@ std::array<double, 3> linear_zero(const WorkMesh& mesh, const DirectionField& fi
     return weights;
 }
 
+/// Flat parts of patches have no direction of their own: they take that of the patch's longest feature edge, with next
+/// to no weight.
+void suggest_in_flat_parts(const WorkMesh& mesh, const std::vector<Point3>& normals, DirectionField& field) {
+    std::vector<double> longest(mesh.patch_count, 0.0);
+    std::vector<Point3> along(mesh.patch_count);
+    for (Index h = 0; h < mesh.edges.size(); ++h) {
+        double& length = longest[mesh.patches[h / 3]];
+        if (!mesh.is_feature(h) || !(mesh.lengths[mesh.edges[h]] > length)) continue;
+        length = mesh.lengths[mesh.edges[h]];
+        along[mesh.patches[h / 3]] = mesh.points[mesh.end_of(h)] - mesh.points[mesh.start_of(h)];
+    }
+    for (Index w = 0; w < mesh.wedge_count(); ++w) {
+        const Index patch = mesh.patches[mesh.wedge_first[w] / 3];
+        if (field.confidence[w] > 0.0 || longest[patch] == 0.0) continue;
+        const Point3& n = normals[w];
+        const Point3 d = along[patch] - dot(along[patch], n) * n;
+        if (!(norm(d) > 1e-3 * longest[patch])) continue;
+        field.confidence[w] = 1e-6;
+        field.measured[w] = std::polar(1.0, 2.0 * intrinsic_angle(mesh, w, n, (1.0 / norm(d)) * d));
+    }
+}
+
 }  // namespace
 
 DirectionField measure_directions(const WorkMesh& mesh, const RunControl& control) {
@@ -231,6 +253,7 @@ DirectionField measure_directions(const WorkMesh& mesh, const RunControl& contro
         field.confidence[w] = side * g / (g + field.noise * field.noise);
         field.measured[w] = std::polar(1.0, 2.0 * intrinsic_angle(mesh, w, curvature.normal[w], curvature.dir_max[w]));
     }
+    suggest_in_flat_parts(mesh, curvature.normal, field);
     return field;
 }
 

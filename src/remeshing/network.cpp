@@ -44,9 +44,14 @@ Index Network::add_crossing(Index line, Index edge, double t, double low, double
     }
     if (!(t > low && t < high)) return no_index;
     const Index c = static_cast<Index>(crossings_.size());
-    crossings_.push_back({edge, t, line});
+    crossings_.push_back({edge, t, line, no_index});
     list.insert(at, c);
     return c;
+}
+
+Index Network::add_vertex_crossing(Index line, Index vertex) {
+    crossings_.push_back({no_index, 0.0, line, vertex});
+    return static_cast<Index>(crossings_.size() - 1);
 }
 
 void Network::add_chord(Index line, Index face, Index from, Index to) {
@@ -58,7 +63,9 @@ PerimeterPlace Network::place(Index crossing, Index face, Index first_side) cons
     const Crossing& c = crossings_[crossing];
     for (Index side = 0; side < 3; ++side) {
         const Index h = 3 * face + (first_side + side) % 3;
-        if (mesh_.edges[h] == c.edge) return {side, mesh_.along(h) ? c.t : -c.t};
+        // A vertex comes before everything else on the half-edge that leaves it.
+        if (c.vertex != no_index && mesh_.start_of(h) == c.vertex) return {side, mesh_.along(h) ? 0.0 : -1.0};
+        if (c.vertex == no_index && mesh_.edges[h] == c.edge) return {side, mesh_.along(h) ? c.t : -c.t};
     }
     CERTA_ASSERT(!"a chord's end lies on its face");
     return {};
@@ -135,6 +142,7 @@ bool Network::find_exit(Family family, Index h, Index from, Index& exit, double&
 
 void Network::erase_crossing(Index c) {
     Crossing& crossing = crossings_[c];
+    if (crossing.vertex != no_index) return;
     std::vector<Index>& list = edge_lists_[crossing.edge];
     list.erase(std::find(list.begin(), list.end(), c));
     crossing.edge = no_index;

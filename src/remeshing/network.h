@@ -11,6 +11,7 @@ struct Crossing {
     Index edge = no_index;  ///< no_index: taken back
     double t = 0.0;         ///< in (0, 1) along the edge's first half-edge
     Index line = no_index;
+    Index vertex = no_index;  ///< instead of an edge: a line that starts at the tip of a crease
 };
 
 /// How a line ends.
@@ -52,7 +53,10 @@ public:
     const std::vector<Index>& on_edge(Index edge) const { return edge_lists_[edge]; }
     const Chord& chord(Index c) const { return chords_[c]; }
     Index first_chord(Index face) const { return face_heads_[face]; }
-    Point3 point(Index crossing) const { return mesh_.point_on(crossings_[crossing].edge, crossings_[crossing].t); }
+    Point3 point(Index crossing) const {
+        const Crossing& c = crossings_[crossing];
+        return c.vertex != no_index ? mesh_.points[c.vertex] : mesh_.point_on(c.edge, c.t);
+    }
 
     Index add_line(Family family) {
         lines_.push_back({family, false, {}, {}, {}});
@@ -61,6 +65,8 @@ public:
     /// A crossing near `t`, strictly between `low` and `high` and different from all others; no_index if there is no
     /// room for one more number. Close to an end of the edge, later crossings lie farther inside.
     Index add_crossing(Index line, Index edge, double t, double low, double high);
+    /// The start of a line at a vertex.
+    Index add_vertex_crossing(Index line, Index vertex);
     void add_chord(Index line, Index face, Index from, Index to);
     /// Where a chord that enters face h / 3 at `from`, on half-edge h, may leave: nearest to place `t` of half-edge
     /// `exit` without crossing its family. Changes exit and t (of the exit's edge) and sets the bounds; false: nowhere.

@@ -1,69 +1,94 @@
 // Polygons of the graph (thesis 4.3.3; remesh, stages 8 and 9).
 //
-// Plan: the faces of a graph on a connected surface are disks exactly when the graph is connected there and
-// V - E + F is the surface's; both are checked per component. Nodes become vertices. A T-node is where a line ends on
-// another: it is a corner of all polygons around, though one of them is straight there.
+// Plan: a face with k rims and g handles adds 2 - 2 g - k to the characteristic of its patch, but counts as k faces
+// when rims are counted. So V - E + rims equals the patch's characteristic exactly when every face has one rim and no
+// handle: nothing cancels. Nodes become vertices. A T-node is where a line ends on another: it is a corner of all
+// polygons around, though one of them is straight there.
 #include "remeshing/polygons.h"
 
 #include <algorithm>
 
-#include "core/union_find.h"
-
 namespace certa::remeshing {
 
-std::vector<BadRegion> find_bad_regions(const Graph& graph, const WorkMesh& mesh,
-                                        const std::vector<std::vector<Index>>& faces) {
-    const Index count = mesh.component_count;
-    std::vector<std::int64_t> surface(count, 0), found(count, 0);
-    std::vector<Index> parts(count, 0), any_face(count, no_index);
-    // Of the work mesh: V - E + F per component.
-    std::vector<bool> seen(mesh.points.size(), false);
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const Index c = mesh.components[f];
-        ++surface[c];
-        if (any_face[c] == no_index) any_face[c] = f;
-        for (const Index v : mesh.faces[f])
-            if (!seen[v]) seen[v] = true, ++surface[c];
+namespace {
+
+/// V - E + F of the open patches of the work mesh.
+std::vector<std::int64_t> characteristics(const WorkMesh& mesh) {
+    std::vector<std::int64_t> chi(mesh.patch_count, 0);
+    for (const Index p : mesh.patches) ++chi[p];
+    std::vector<bool> on_feature(mesh.points.size(), false);
+    for (const Index h : mesh.edge_halfedges) {
+        if (mesh.is_feature(h))
+            on_feature[mesh.start_of(h)] = on_feature[mesh.end_of(h)] = true;
+        else
+            --chi[mesh.patches[h / 3]];
     }
-    for (const Index h : mesh.edge_halfedges) --surface[mesh.components[h / 3]];
-    core::UnionFind sets(graph.nodes.size());
-    const auto component_of = [&](Index node) { return mesh.components[graph.nodes[node].place.face]; };
-    for (const GraphEdge& e : graph.edges) {
-        if (!e.alive()) continue;
-        --found[component_of(e.a)];
-        sets.unite(e.a, e.b);
-    }
-    for (Index n = 0; n < graph.nodes.size(); ++n) {
-        if (graph.nodes[n].arms.empty()) continue;
-        ++found[component_of(n)];
-        parts[component_of(n)] += sets.find(n) == n ? 1 : 0;
-    }
-    for (const auto& face : faces) ++found[component_of(graph.tail(face.front()))];
-    std::vector<BadRegion> bad;
-    for (Index c = 0; c < count; ++c)
-        if (parts[c] != 1 || found[c] != surface[c])
-            bad.push_back({c, mesh.points[mesh.faces[any_face[c]][0]], any_face[c], found[c] - surface[c]});
-    return bad;
+    for (Index w = 0; w < mesh.wedge_count(); ++w)
+        if (!on_feature[mesh.wedge_vertices[w]]) ++chi[mesh.patches[mesh.wedge_first[w] / 3]];
+    return chi;
 }
 
-CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index>>& faces, PolygonCounts& counts) {
+/// The patch to the left of a half-edge of the graph.
+Index patch_of(const Graph& graph, const Network& network, Index h) {
+    const WorkMesh& mesh = network.mesh();
+    const GraphEdge& e = graph.edges[h / 2];
+    if (e.line != no_index) {
+        const auto& faces = network.lines()[e.line].faces;
+        return mesh.patches[faces[static_cast<std::size_t>(e.from) % faces.size()]];
+    }
+    const FeatureCurve& curve = mesh.curves[e.curve];
+    const std::size_t k = static_cast<std::size_t>(e.from) % curve.edges.size();
+    const Index first = mesh.edge_halfedges[curve.edges[k]];
+    const bool along = (mesh.start_of(first) == curve.vertices[k]) == (h % 2 == 0);
+    const Index side = along ? first : mesh.opposites[first];
+    return side == no_index ? no_index : mesh.patches[side / 3];
+}
+
+}  // namespace
+
+Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<std::vector<Index>>& faces) {
+    const WorkMesh& mesh = network.mesh();
+    std::vector<std::int64_t> rest = characteristics(mesh);
+    std::vector<bool> met(mesh.patch_count, false);
+    for (const GraphNode& node : graph.nodes)
+        if (!node.arms.empty() && node.curve == no_index) --rest[mesh.patches[node.place.face]];
+    for (Index e = 0; e < graph.edges.size(); ++e)
+        if (graph.edges[e].alive() && graph.edges[e].line != no_index) ++rest[patch_of(graph, network, 2 * e)];
+    std::vector<Index> last_seen(graph.nodes.size(), no_index);
+    Flaws flaws;
+    for (Index f = 0; f < faces.size(); ++f) {
+        const Index patch = patch_of(graph, network, faces[f].front());
+        if (patch != no_index) --rest[patch], met[patch] = true;
+        bool pinched = faces[f].size() < 3;
+        for (const Index h : faces[f]) {
+            const Index n = graph.tail(h);
+            pinched = pinched || last_seen[n] == f;
+            last_seen[n] = f;
+        }
+        if (pinched)
+            for (const Index h : faces[f]) flaws.nodes.push_back(graph.tail(h));
+    }
+    for (Index p = 0; p < mesh.patch_count; ++p)
+        if (rest[p] != 0 || !met[p]) flaws.patches.push_back(p);
+    return flaws;
+}
+
+CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index>>& faces, PolygonCounts& counts,
+                         std::vector<Index>& nodes) {
     CoarseMesh coarse;
     std::vector<Index> numbers(graph.nodes.size(), no_index);
     for (Index n = 0; n < graph.nodes.size(); ++n) {
         const GraphNode& node = graph.nodes[n];
         if (node.arms.empty()) continue;
+        nodes.push_back(n);
         numbers[n] = coarse.add_vertex(node.point, node.place, node.kind, node.curve);
     }
     std::vector<Index> ring;
-    std::vector<Index> last_seen(coarse.points.size(), no_index);
     for (std::size_t f = 0; f < faces.size(); ++f) {
         ring.clear();
         std::size_t corners = 0;
-        bool pinched = false;
         for (const Index h : faces[f]) {
             const Index n = numbers[graph.tail(h)];
-            pinched = pinched || last_seen[n] == f;
-            last_seen[n] = static_cast<Index>(f);
             ring.push_back(n);
             // No turn: the side that arrives here and the one that leaves are of one line or curve.
             const auto& arms = graph.nodes[graph.tail(h)].arms;
@@ -74,7 +99,6 @@ CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index
             corners += straight ? 0 : 1;
             counts.t_nodes += straight ? 1 : 0;
         }
-        counts.pinched += pinched ? 1 : 0;
         ++counts.polygons;
         counts.quads_with_t += ring.size() == 4 ? 1 : 0;
         counts.quads_without_t += corners == 4 ? 1 : 0;

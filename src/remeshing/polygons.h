@@ -4,15 +4,21 @@
 
 namespace certa::remeshing {
 
-/// Parts of the surface where the graph's faces are not disks; empty: all of them are.
-std::vector<BadRegion> find_bad_regions(const Graph& graph, const WorkMesh& mesh,
-                                        const std::vector<std::vector<Index>>& faces);
+/// Where the graph's faces are no polygons yet.
+struct Flaws {
+    std::vector<Index> patches;  ///< of the work mesh: not all faces there are disks
+    std::vector<Index> nodes;    ///< of faces that meet themselves in a node
+    bool empty() const { return patches.empty() && nodes.empty(); }
+};
+/// Checks all faces: in every patch V - E + F over what lies inside it must be the patch's own, which holds exactly
+/// when each face has one rim and no handle; and no face may pass a node twice.
+Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<std::vector<Index>>& faces);
 
 struct PolygonCounts {
     std::size_t t_nodes = 0, polygons = 0, quads_with_t = 0, quads_without_t = 0;
-    std::size_t pinched = 0;  ///< polygons that meet themselves in a vertex
 };
-/// The faces as polygons over the graph's nodes.
-CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index>>& faces, PolygonCounts& counts);
+/// The faces as polygons over the graph's nodes; `nodes` receives the node of each vertex.
+CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index>>& faces, PolygonCounts& counts,
+                         std::vector<Index>& nodes);
 
 }  // namespace certa::remeshing

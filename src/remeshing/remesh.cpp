@@ -64,7 +64,7 @@ struct Draft {
     Graph graph;
     CoarseMesh polygons;
     PolygonCounts counts;
-    std::vector<BadRegion> bad;
+    std::vector<Point3> flaws;  ///< places that no refinement has mended
 };
 
 class Remesher {
@@ -86,6 +86,8 @@ private:
     SpacingRule rule_of(double error) const;
     double start_error();
     Draft draft(double error);
+    void refine(const Flaws& flaws, const Graph& graph, const Spacing& spacing);
+    std::vector<Index> crowded_vertices(const CoarseMesh& mesh) const;
     double count_of(const Draft& draft) const;
     void search();
     void finish();
@@ -101,6 +103,8 @@ private:
     WorkMesh mesh_;
     TriangleMesh input_;  ///< the work mesh
     DirectionField field_;
+    std::vector<double> caps_;        ///< per wedge: largest spacing, 0 where free
+    std::vector<double> patch_caps_;  ///< per patch, of the last refinement
     std::optional<Draft> best_;
 };
 
@@ -118,8 +122,8 @@ double Remesher::start_error() {
     const double wanted = static_cast<double>(options_.vertices ? *options_.vertices : *options_.faces);
     double error = 4e-3 * mesh_.diagonal;
     for (int round = 0; round < 6; ++round)
-        error *=
-            std::clamp(expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error))) / wanted, 0.05, 20.0);
+        error *= std::clamp(expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_)) / wanted,
+                            0.05, 20.0);
     return error;
 }
 
@@ -143,19 +147,86 @@ bool Remesher::prepare() {
     return !control_.cancelled();
 }
 
+/// Lines closer together where faces are no polygons: all over a patch, or around nodes.
+void Remesher::refine(const Flaws& flaws, const Graph& graph, const Spacing& spacing) {
+    caps_.resize(mesh_.wedge_count(), 0.0);
+    patch_caps_.resize(mesh_.patch_count, 0.0);
+    std::vector<bool> flawed(mesh_.patch_count, false);
+    std::vector<std::array<Point3, 2>> boxes(mesh_.patch_count,
+                                             {Point3{1e300, 1e300, 1e300}, Point3{-1e300, -1e300, -1e300}});
+    for (const Index p : flaws.patches) flawed[p] = true;
+    for (Index f = 0; f < mesh_.face_count(); ++f) {
+        if (!flawed[mesh_.patches[f]]) continue;
+        auto& [low, high] = boxes[mesh_.patches[f]];
+        for (const Index v : mesh_.faces[f]) {
+            const Point3& p = mesh_.points[v];
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        }
+    }
+    for (const Index p : flaws.patches)
+        patch_caps_[p] = patch_caps_[p] == 0.0 ? 0.4 * distance(boxes[p][0], boxes[p][1]) : 0.6 * patch_caps_[p];
+    const auto lower = [&](Index w, double cap) {
+        if (caps_[w] == 0.0 || cap < caps_[w]) caps_[w] = cap;
+    };
+    for (Index w = 0; w < mesh_.wedge_count(); ++w) {
+        const Index p = mesh_.patches[mesh_.wedge_first[w] / 3];
+        if (flawed[p]) lower(w, patch_caps_[p]);
+    }
+    for (const Index n : flaws.nodes) {
+        const Index f = graph.nodes[n].place.face;
+        for (Index c = 3 * f; c < 3 * f + 3; ++c) {
+            const Index w = mesh_.wedges[c];
+            lower(w, 0.6 * std::min(spacing.at[0][w], spacing.at[1][w]));
+        }
+    }
+}
+
+/// Edges of the mesh as it will be written that more than two polygons share, or one twice: their ends.
+std::vector<Index> Remesher::crowded_vertices(const CoarseMesh& mesh) const {
+    std::vector<std::array<Index, 2>> sides;
+    for (std::size_t i = 0; i < mesh.polygon_count(); ++i) {
+        const auto ring = mesh.polygon(i);
+        for (std::size_t k = 0; k < ring.size(); ++k) sides.push_back({ring[k], ring[(k + 1) % ring.size()]});
+    }
+    std::sort(sides.begin(), sides.end());
+    std::vector<Index> crowded;
+    for (std::size_t i = 1; i < sides.size(); ++i)
+        if (sides[i] == sides[i - 1]) crowded.insert(crowded.end(), sides[i].begin(), sides[i].end());
+    return crowded;
+}
+
 Draft Remesher::draft(double error) {
-    const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error));
-    watch_.stage("spacing");
-    Draft d{error, trace_lines(mesh_, field_, spacing, TraceRule{}, control_), {}, {}, {}, {}};
-    watch_.stage("lines");
-    d.graph = build_graph(d.network, {0.5 * error});
-    simplify_graph(d.graph, d.network);
-    const auto faces = d.graph.trace_faces(mesh_);
-    d.bad = find_bad_regions(d.graph, mesh_, faces);
-    d.polygons = make_polygons(d.graph, faces, d.counts);
-    watch_.stage("arrangement");
-    ++result_.statistics.rounds;
-    return d;
+    constexpr int most_rounds = 14;
+    for (int round = 0;; ++round) {
+        const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
+        watch_.stage("spacing");
+        Draft d{error, trace_lines(mesh_, field_, spacing, TraceRule{}, control_), {}, {}, {}, {}};
+        watch_.stage("lines");
+        ++result_.statistics.rounds;
+        d.graph = build_graph(d.network, {0.5 * error});
+        simplify_graph(d.graph, d.network);
+        const auto faces = d.graph.trace_faces(mesh_);
+        Flaws flaws = find_flaws(d.graph, d.network, faces);
+        if (flaws.empty()) {
+            std::vector<Index> nodes;
+            d.polygons = make_polygons(d.graph, faces, d.counts, nodes);
+            for (const Index v : crowded_vertices(cut(d.polygons))) flaws.nodes.push_back(nodes[v]);
+        }
+        watch_.stage("arrangement");
+        if (flaws.empty() || control_.cancelled()) return d;
+        if (round == most_rounds) {
+            for (const Index p : flaws.patches)
+                for (Index f = 0; f < mesh_.face_count(); ++f)
+                    if (mesh_.patches[f] == p) {
+                        d.flaws.push_back(mesh_.points[mesh_.faces[f][0]]);
+                        break;
+                    }
+            for (const Index n : flaws.nodes) d.flaws.push_back(d.graph.nodes[n].point);
+            return d;
+        }
+        refine(flaws, d.graph, spacing);
+    }
 }
 
 double Remesher::count_of(const Draft& draft) const {
@@ -238,14 +309,21 @@ void Remesher::describe_polygons() {
     const double polygons = static_cast<double>(std::max<std::size_t>(best_->counts.polygons, 1));
     s.quad_share_with_t = static_cast<double>(best_->counts.quads_with_t) / polygons;
     s.quad_share_without_t = static_cast<double>(best_->counts.quads_without_t) / polygons;
-    for (const BadRegion& bad : best_->bad)
-        s.notes.push_back("component " + std::to_string(bad.component + 1) + ": faces are not disks, by " +
-                          std::to_string(bad.euler_characteristic));
-    if (best_->counts.pinched > 0) s.notes.push_back(std::to_string(best_->counts.pinched) + " pinched polygons");
 }
 
 void Remesher::finish() {
     describe_polygons();
+    if (!best_->flaws.empty()) {
+        // Nothing half right: an answer would have the wrong topology.
+        const Point3& p = best_->flaws.front();
+        result_.outcome = Outcome::undecided;
+        result_.statistics.notes.push_back(
+            "no network of lines was found whose faces are simple polygons everywhere, first near (" +
+            std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
+            "); a smaller error or more vertices may do it");
+        describe_lines();
+        return;
+    }
     CoarseMesh coarse = cut(best_->polygons);
     watch_.stage("outputs");
     if (options_.output == RemeshOutput::polygons && options_.placement) {

@@ -69,7 +69,8 @@ double chord_of(double curvature, double largest, const SpacingRule& rule) {
     return std::clamp(chord, floor, largest);
 }
 
-Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const SpacingRule& rule) {
+Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const SpacingRule& rule,
+                        const std::vector<double>& caps) {
     Spacing spacing;
     const double half = 0.5 * rule.isotropy;
     const std::vector<double> diagonals = component_diagonals(mesh);
@@ -82,11 +83,14 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
     }
     for (std::size_t family = 0; family < 2; ++family) {
         const std::vector<double> raw = spacing.at[family];
+        for (Index w = 0; w < caps.size(); ++w)
+            if (caps[w] > 0.0) spacing.at[family][w] = std::min(spacing.at[family][w], caps[w]);
         limit_growth(mesh, spacing.at[family], rule.growth);
         spacing.wanted[family].resize(raw.size());
         for (Index w = 0; w < mesh.wedge_count(); ++w) {
             const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
             spacing.wanted[family][w] = raw[w] < 0.999 * largest && raw[w] < 4.0 * spacing.at[family][w];
+            if (!caps.empty() && caps[w] > 0.0) spacing.wanted[family][w] = true;
         }
     }
     return spacing;

@@ -21,7 +21,9 @@ struct Spacing {
 
 /// Equation 4.6: the chord of a circle of curvature k with sagitta e; `largest` where it would be longer.
 double chord_of(double curvature, double largest, const SpacingRule& rule);
-Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const SpacingRule& rule);
+/// `caps`: per wedge, lines are wanted there and not farther apart than this; 0: no cap.
+Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const SpacingRule& rule,
+                        const std::vector<double>& caps);
 /// Number of vertices that a perfect network of this spacing has.
 double expected_vertices(const WorkMesh& mesh, const Spacing& spacing);
 

@@ -9,6 +9,7 @@
 #include "remeshing/trace_lines.h"
 
 #include <algorithm>
+#include <numbers>
 #include <queue>
 
 namespace certa::remeshing {
@@ -61,6 +62,10 @@ public:
     }
     /// After both families: leads ends to the next line of the other one.
     void lengthen();
+    /// Goes on from a vertex at an intrinsic angle of its wedge to the next line of the other family or feature.
+    bool trace_from_vertex(Index corner, double angle);
+    /// The direction of this family at a wedge that is nearest to an angle.
+    double nearest_direction(Index wedge, double angle) const;
 
 private:
     Complex direction(Index h, double t) const {
@@ -99,6 +104,8 @@ private:
     bool step(Index line, Cursor& cursor, LineEnd& end, const Complex* homing);
     LineEnd follow(Index line, Cursor cursor, bool may_close);
     bool close_loop(Index line, Cursor cursor);
+    bool meets_other(Index line) const;
+    bool run_to_other(Index line, Cursor cursor, double allowed);
     double distance_at(Index crossing, Index face) const;
     void publish(Index line, std::size_t from, std::size_t upto);
     double chord_length(const Line& line, std::size_t k) const {
@@ -495,6 +502,34 @@ bool FamilyTracer::trace(const Seed& seed) {
     return true;
 }
 
+/// Whether the line's last chord crosses a chord of the other family.
+bool FamilyTracer::meets_other(Index line) const {
+    const Line& l = network_.lines()[line];
+    const Index f = l.faces.back();
+    const Chord own{f, line, l.crossings[l.crossings.size() - 2], l.crossings.back(), no_index};
+    for (Index c = network_.first_chord(f); c != no_index; c = network_.chord(c).next)
+        if (network_.family_of(network_.chord(c)) != family_ && network_.cross(network_.chord(c), own)) return true;
+    return false;
+}
+
+/// Until a line of the other family or a feature is met, at most `allowed` further.
+bool FamilyTracer::run_to_other(Index line, Cursor cursor, double allowed) {
+    double length = 0.0;
+    for (int guard = 0; guard < 100000 && length < allowed; ++guard) {
+        LineEnd end = LineEnd::none;
+        const bool going = step(line, cursor, end, nullptr);
+        if (end == LineEnd::stuck) return false;
+        if (!going) {
+            network_.lines()[line].ends[1] = LineEnd::feature;
+            return true;
+        }
+        const Line& now = network_.lines()[line];
+        length += chord_length(now, now.faces.size() - 1);
+        if (meets_other(line)) return true;
+    }
+    return false;
+}
+
 void FamilyTracer::lengthen() {
     const std::size_t count = network_.lines().size();
     for (Index line = 0; line < count; ++line) {
@@ -521,28 +556,82 @@ void FamilyTracer::lengthen() {
             cursor.heading = u.imag() < 0.0 ? -u : u;
             if (cursor.heading.imag() < 0.02) cursor.heading = Complex(0.0, 1.0);
             const double allowed = 1.5 * other_spacing_at(cursor.halfedge, cursor.t);
-            double length = 0.0;
-            bool reached = false;
-            for (int guard = 0; guard < 100000 && length < allowed && !reached; ++guard) {
-                LineEnd end = LineEnd::none;
-                const bool going = step(line, cursor, end, nullptr);
-                const Line& now = network_.lines()[line];
-                if (end == LineEnd::stuck) break;
-                if (!going) {
-                    reached = true;
-                    network_.lines()[line].ends[1] = LineEnd::feature;
-                    break;
-                }
-                length += chord_length(now, now.faces.size() - 1);
-                const Index f = now.faces.back();
-                const Chord own{f, line, now.crossings[now.crossings.size() - 2], now.crossings.back(), no_index};
-                for (Index c = network_.first_chord(f); c != no_index && !reached; c = network_.chord(c).next)
-                    reached =
-                        network_.family_of(network_.chord(c)) != family_ && network_.cross(network_.chord(c), own);
-            }
+            const bool reached = run_to_other(line, cursor, allowed);
             if (!reached)
                 while (network_.lines()[line].crossings.size() > before) network_.remove_last(line);
         }
+    }
+}
+
+double FamilyTracer::nearest_direction(Index wedge, double angle) const {
+    double own = 0.5 * std::arg(field_.squares[wedge]) + (family_ == along_min ? 0.5 * std::numbers::pi : 0.0);
+    own += std::numbers::pi * std::round((angle - own) / std::numbers::pi);
+    return own;
+}
+
+bool FamilyTracer::trace_from_vertex(Index corner, double angle) {
+    const Index vertex = mesh_.start_of(corner), face = corner / 3, i = corner % 3;
+    const Index line = network_.add_line(family_);
+    const Index start = network_.add_vertex_crossing(line, vertex);
+    network_.lines()[line].crossings.push_back(start);
+    network_.lines()[line].ends[0] = LineEnd::feature;
+    // The first chord, from the vertex to the opposite side.
+    const Complex o = mesh_.local(face, i), p = mesh_.local(face, (i + 1) % 3), q = mesh_.local(face, (i + 2) % 3);
+    const double part = (angle - mesh_.corner_start[corner]) / mesh_.corner_angle[corner];
+    const Complex d = std::polar(1.0, std::arg(p - o) + part * std::arg((q - o) * std::conj(p - o)));
+    const auto wedge = [](const Complex& x, const Complex& y) { return x.real() * y.imag() - x.imag() * y.real(); };
+    const double x = wedge(d, p - o), y = wedge(d, q - o);
+    Index exit = next_of(corner);
+    const Index wanted = exit;
+    double place = along_halfedge(exit, x == y ? 0.5 : std::clamp(x / (x - y), 0.0, 1.0)), low = 0.0, high = 1.0;
+    Index first = no_index;
+    if (network_.find_exit(family_, corner, start, exit, place, low, high) && exit == wanted)
+        first = network_.add_crossing(line, mesh_.edges[exit], place, low, high);
+    bool reached = false;
+    if (first != no_index) {
+        network_.add_chord(line, face, start, first);
+        Line& l = network_.lines()[line];
+        l.crossings.push_back(first);
+        l.faces.push_back(face);
+        reached = mesh_.is_feature(exit);
+        if (!reached) {
+            Cursor cursor;
+            cursor.halfedge = mesh_.opposites[exit];
+            cursor.crossing = first;
+            cursor.t = along_halfedge(cursor.halfedge, network_.crossing(first).t);
+            cursor.heading = -d / unit_side(exit);
+            if (cursor.heading.imag() < 0.02) cursor.heading = Complex(0.0, 1.0);
+            reached = meets_other(line) || run_to_other(line, cursor, mesh_.diagonal);
+        }
+    }
+    if (!reached) network_.remove_line(line);
+    return reached;
+}
+
+/// Every crease that ends in nothing goes on as a line.
+void extend_tips(const WorkMesh& mesh, FamilyTracer& max, FamilyTracer& min) {
+    std::vector<Index> degree(mesh.points.size(), 0);
+    for (Index e = 0; e < mesh.edge_curves.size(); ++e) {
+        if (mesh.edge_curves[e] == no_index) continue;
+        ++degree[mesh.start_of(mesh.edge_halfedges[e])];
+        ++degree[mesh.end_of(mesh.edge_halfedges[e])];
+    }
+    for (Index w = 0; w < mesh.wedge_count(); ++w) {
+        if (degree[mesh.wedge_vertices[w]] != 1) continue;
+        Index last = mesh.wedge_first[w];
+        while (mesh.next_corner(last) != no_index) last = mesh.next_corner(last);
+        const double middle = 0.5 * (mesh.corner_start[last] + mesh.corner_angle[last]);
+        double a = max.nearest_direction(w, middle), b = min.nearest_direction(w, middle);
+        FamilyTracer *best = &max, *other = &min;
+        if (std::abs(b - middle) < std::abs(a - middle)) std::swap(a, b), std::swap(best, other);
+        const auto corner_at = [&](double angle) {
+            Index c = mesh.wedge_first[w];
+            while (c != no_index && angle >= mesh.corner_start[c] + mesh.corner_angle[c]) c = mesh.next_corner(c);
+            return c;
+        };
+        const Index c = corner_at(a), d = corner_at(b);
+        if (c != no_index && best->trace_from_vertex(c, a)) continue;
+        if (d != no_index) other->trace_from_vertex(d, b);
     }
 }
 
@@ -557,6 +646,7 @@ Network trace_lines(const WorkMesh& mesh, const DirectionField& field, const Spa
     min.run();
     max.lengthen();
     min.lengthen();
+    extend_tips(mesh, max, min);
     return network;
 }
 

@@ -7,12 +7,10 @@
 #include "remeshing/work_mesh.h"
 
 #include <algorithm>
-#include <cstring>
 #include <numbers>
 #include <numeric>
-#include <unordered_map>
 
-#include "core/assert.h"
+#include "core/index_map.h"
 #include "core/union_find.h"
 
 namespace certa::remeshing {
@@ -55,8 +53,14 @@ std::vector<Index> merge_points(const std::vector<Point3>& points) {
 }
 
 /// Faces without repeated corners and without repetitions of each other.
-void take_faces(WorkMesh& work, const TriangleMesh& mesh, RemeshStatistics& statistics) {
+void take_faces(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
     const std::vector<Index> first = merge_points(mesh.positions);
+    for (const Edge& edge : options.features) {
+        if (index_of(edge[0]) >= first.size() || index_of(edge[1]) >= first.size())
+            throw InputError(
+                {{DefectKind::index_out_of_range, {}, {}, "a tagged edge names a vertex that is not there"}});
+        work.tagged.insert(pair_key(first[index_of(edge[0])], first[index_of(edge[1])]));
+    }
     std::vector<std::array<Index, 4>> sorted;
     sorted.reserve(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -223,6 +227,20 @@ void find_components(WorkMesh& work) {
     }
 }
 
+/// What features leave connected.
+void find_patches(WorkMesh& work) {
+    core::UnionFind sets(work.faces.size());
+    for (Index h = 0; h < work.opposites.size(); ++h)
+        if (!work.is_feature(h)) sets.unite(h / 3, work.opposites[h] / 3);
+    work.patches.resize(work.faces.size());
+    std::vector<Index> numbers(work.faces.size(), no_index);
+    for (Index f = 0; f < work.face_count(); ++f) {
+        Index& number = numbers[sets.find(f)];
+        if (number == no_index) number = work.patch_count++;
+        work.patches[f] = number;
+    }
+}
+
 /// Lengths, enlarged until the flattest triangle has a little height, and layouts.
 void lay_out(WorkMesh& work) {
     work.lengths.resize(work.edge_halfedges.size());
@@ -252,7 +270,84 @@ void lay_out(WorkMesh& work) {
     }
 }
 
+double box_diagonal(const WorkMesh& work) {
+    Point3 low = work.points[0], high = low;
+    for (const Point3& p : work.points) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    return distance(low, high);
+}
+
+/// The pieces of a face with midpoints on some of its sides (no_index: none).
+void cut_face(const std::array<Index, 3>& f, const std::array<Index, 3>& middle, const std::vector<Point3>& points,
+              std::vector<std::array<Index, 3>>& pieces) {
+    const int marked =
+        static_cast<int>(std::count_if(middle.begin(), middle.end(), [](Index m) { return m != no_index; }));
+    if (marked == 3) {
+        for (std::size_t i = 0; i < 3; ++i) pieces.push_back({f[i], middle[i], middle[(i + 2) % 3]});
+        pieces.push_back(middle);
+        return;
+    }
+    std::size_t i = 0;  // the side to begin with: marked, and with two marks the one before the other
+    while (middle[i] == no_index || (marked == 2 && middle[(i + 1) % 3] == no_index)) ++i;
+    const Index a = f[i], b = f[(i + 1) % 3], c = f[(i + 2) % 3], m = middle[i], n = middle[(i + 1) % 3];
+    if (marked == 1) {
+        pieces.push_back({a, m, c});
+        pieces.push_back({m, b, c});
+        return;
+    }
+    pieces.push_back({m, b, n});
+    if (distance(points[a], points[n]) <= distance(points[m], points[c])) {
+        pieces.push_back({a, m, n});
+        pieces.push_back({a, n, c});
+    } else {
+        pieces.push_back({a, m, c});
+        pieces.push_back({m, n, c});
+    }
+}
+
 }  // namespace
+
+void split_long_edges(WorkMesh& work, double longest, Index input_vertices) {
+    if (!(longest > 0.0)) return;
+    for (int round = 0; round < 16; ++round) {
+        core::PairMap middles(64);
+        std::vector<std::array<Index, 3>> faces;
+        std::vector<Index> sources;
+        const auto middle_of = [&](Index a, Index b) {
+            if (!(distance(work.points[a], work.points[b]) > longest)) return no_index;
+            Index m = middles.find(a, b);
+            if (m != no_index) return m;
+            m = static_cast<Index>(work.points.size());
+            middles.set(a, b, m);
+            const Point3 middle = 0.5 * (work.points[a] + work.points[b]);
+            work.points.push_back(middle);
+            const Index source = input_vertices + m, sa = work.point_sources[a], sb = work.point_sources[b];
+            work.point_sources.push_back(source);
+            if (work.tagged.contains(pair_key(sa, sb))) {
+                work.tagged.insert(pair_key(sa, source));
+                work.tagged.insert(pair_key(source, sb));
+            }
+            return m;
+        };
+        bool any = false;
+        for (std::size_t f = 0; f < work.faces.size(); ++f) {
+            const auto& [a, b, c] = work.faces[f];
+            const std::array<Index, 3> middle{middle_of(a, b), middle_of(b, c), middle_of(c, a)};
+            if (middle == std::array{no_index, no_index, no_index}) {
+                faces.push_back(work.faces[f]);
+            } else {
+                any = true;
+                cut_face(work.faces[f], middle, work.points, faces);
+            }
+            sources.resize(faces.size(), work.face_sources[f]);
+        }
+        work.faces = std::move(faces);
+        work.face_sources = std::move(sources);
+        if (!any) return;
+    }
+}
 
 void build_wedges(WorkMesh& work) {
     const Index corners = 3 * work.face_count();
@@ -305,7 +400,8 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     WorkMesh work;
     statistics.input_vertices = mesh.positions.size();
     statistics.input_triangles = mesh.triangles.size();
-    take_faces(work, mesh, statistics);
+    take_faces(work, mesh, options, statistics);
+    split_long_edges(work, 0.04 * box_diagonal(work), static_cast<Index>(mesh.positions.size()));
     statistics.non_manifold_edges = pair_halfedges(work);
     orient(work, statistics);
     pair_halfedges(work);
@@ -313,18 +409,14 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     number_edges(work);
     find_components(work);
     lay_out(work);
-    Point3 low = work.points[0], high = low;
-    for (const Point3& p : work.points) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    work.diagonal = distance(low, high);
+    work.diagonal = box_diagonal(work);
     work.euler_characteristic = static_cast<std::int64_t>(work.points.size()) -
                                 static_cast<std::int64_t>(work.lengths.size()) +
                                 static_cast<std::int64_t>(work.faces.size());
     statistics.components = work.component_count;
     statistics.euler_characteristic = work.euler_characteristic;
     find_features(work, options, statistics);
+    find_patches(work);
     build_wedges(work);
     return work;
 }

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <complex>
 #include <cstdint>
+#include <unordered_set>
 #include <vector>
 
 #include "core/vector3.h"
@@ -14,6 +15,10 @@
 namespace certa::remeshing {
 
 using Complex = std::complex<double>;
+
+inline std::uint64_t pair_key(Index a, Index b) {
+    return (static_cast<std::uint64_t>(a < b ? a : b) << 32) | (a < b ? b : a);
+}
 
 /// Half-edge 3 f + i leaves corner i of face f towards corner i + 1; corner c = 3 f + i is where it starts.
 inline Index next_of(Index h) { return h % 3 == 2 ? h - 2 : h + 1; }
@@ -34,7 +39,8 @@ struct FeatureCurve {
 /// wedge. Angles are intrinsic, of edge lengths that are enlarged ever so little, so that no triangle is flat.
 struct WorkMesh {
     std::vector<Point3> points;
-    std::vector<Index> point_sources;  ///< vertex of the input
+    std::vector<Index> point_sources;  ///< vertex of the input; beyond those, points that were added on long edges
+    std::unordered_set<std::uint64_t> tagged;  ///< edges that are creases: keys of their ends' point_sources
     std::vector<std::array<Index, 3>> faces;
     std::vector<Index> face_sources;    ///< triangle of the input
     std::vector<Index> opposites;       ///< per half-edge; no_index at the boundary
@@ -44,6 +50,8 @@ struct WorkMesh {
     std::vector<FeatureCurve> curves;
     std::vector<bool> is_corner;    ///< per vertex
     std::vector<Index> components;  ///< per face
+    std::vector<Index> patches;     ///< per face: parts between features
+    Index patch_count = 0;
     Index component_count = 0;
     std::vector<double> lengths;  ///< per edge, enlarged
 
@@ -86,6 +94,8 @@ struct WorkMesh {
 /// Errors: InputError (see remesh).
 WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics);
 
+/// Halves edges longer than `longest`, and their triangles with them, until none is left. The surface stays as it is.
+void split_long_edges(WorkMesh& mesh, double longest, Index input_vertices);
 /// Features by angle, boundary, and what is tagged; fills edge_curves, curves, is_corner.
 void find_features(WorkMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics);
 /// Fills wedges and intrinsic angles; needs features.
