@@ -137,9 +137,12 @@ private:
         prepared_.present_facets.assign(complex.frames.size(), 0);
         if (!prepared_.triangulation->is_solid()) return;
         for (std::uint32_t f = 0; f < complex.frames.size(); ++f) {
-            if (const auto t = triangle_of(complex, f)) {
-                prepared_.present_facets[f] = prepared_.triangulation->mark_face((*t)[0], (*t)[1], (*t)[2], f) ? 1 : 0;
-            }
+            const auto t = triangle_of(complex, f);
+            if (!t) continue;
+            const delaunay::FaceHandle face = prepared_.triangulation->find_face((*t)[0], (*t)[1], (*t)[2]);
+            if (face.cell == nullptr) continue;
+            prepared_.triangulation->mark_face(face, f);
+            prepared_.present_facets[f] = 1;
         }
     }
 

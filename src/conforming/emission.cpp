@@ -53,7 +53,7 @@ public:
         for (std::uint32_t s = 0; s < mesh_.complex.segments.size(); ++s) {
             for (std::uint32_t id = mesh_.first_pieces[s]; id != no_index; id = mesh_.pieces[id].next) {
                 const Piece& piece = mesh_.pieces[id];
-                // Sides of facets are sides of constraint triangles, which are looked up one by one.
+                // Sides of facets are sides of constraint triangles.
                 const bool implied = !present_only && !mesh_.complex.segment_facets[s].empty();
                 const bool present = implied || mesh_.triangulation.has_edge(piece.a, piece.b);
                 CERTA_ASSERT(present || present_only);
@@ -89,19 +89,30 @@ private:
     }
 
     void emit_constraints(const Recovery& recovery) {
-        mesh_.triangulation.clear_marks();
+        std::vector<std::uint32_t> counts = mesh_.triangulation.count_marks(mesh_.complex.frames.size());
         std::vector<Corners> triangles;
         for (std::uint32_t f = 0; f < mesh_.complex.frames.size(); ++f) {
             if (mesh_.complex.facet_sides[f].empty()) continue;
             recovery.collect_triangles(f, triangles);
             CERTA_ASSERT(!triangles.empty());
             for (const Corners& t : triangles) {
-                CERTA_ASSERT(mesh_.mark(f, t));
                 result_.mesh.triangles.push_back(to_triangle(t));
                 result_.mesh.triangle_facets.push_back(FacetId{f});
             }
+            counts[f] -= static_cast<std::uint32_t>(triangles.size());
         }
+        // Marks are those of the triangles, unless facets share some: a face has one mark.
+        if (std::any_of(counts.begin(), counts.end(), [](std::uint32_t n) { return n != 0; })) mark_anew();
         emit_pieces(false);
+    }
+
+    void mark_anew() {
+        mesh_.triangulation.clear_marks();
+        for (std::size_t i = 0; i < result_.mesh.triangles.size(); ++i) {
+            const Triangle& t = result_.mesh.triangles[i];
+            CERTA_ASSERT(mesh_.mark(index_of(result_.mesh.triangle_facets[i]),
+                                    {index_of(t[0]), index_of(t[1]), index_of(t[2])}));
+        }
     }
 
     bool is_kept(std::uint32_t component) const { return component != no_index && kept_[component] != 0; }

@@ -2,13 +2,16 @@
 // and its shields as constraints; it is made anew whenever the facet changed, from a handful of points as a rule. Ties:
 // points on one circle (grids, rectangles, rims of holes) leave a choice. The mesh has made its own, so a maximal
 // polygon of cocircular points counts as present when faces of the mesh tile it; these faces then replace ours.
+// The same search comes first for plain triangles, whose sides may be cut.
 #include "conforming/facet_patch.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <unordered_map>
+#include <utility>
 
+#include "conforming/facet_interior.h"
 #include "core/vector3.h"
 #include "exact/orientation.h"
 
@@ -17,61 +20,73 @@ namespace {
 
 using Corners = std::array<std::uint32_t, 3>;
 
-// Tiles a polygon of cocircular points by faces of the mesh: solve(i, j) is about the part of the polygon beyond its
+// Tiles a counter-clockwise polygon by faces of the mesh: solve(i, j) is about the part of the polygon beyond its
 // chord (i, j), whose third corner must be one of the vertices that the mesh links to that chord.
 class TieSolver {
 public:
-    TieSolver(const MeshState& mesh, const FacetPatch& patch, const std::vector<std::uint32_t>& polygon, bool gabriel)
-        : mesh_(mesh), patch_(patch), polygon_(polygon), gabriel_(gabriel) {
+    /// `sides`: per corner of the polygon, a bit for each straight side it lies on, or empty: a tile has no three
+    /// corners on one side, where only rounding would tell their orientation.
+    TieSolver(const MeshState& mesh, const FacetPatch& patch, const std::vector<std::uint32_t>& polygon, bool gabriel,
+              std::vector<std::uint8_t> sides = {})
+        : mesh_(mesh), patch_(patch), polygon_(polygon), gabriel_(gabriel), sides_(std::move(sides)) {
         for (std::uint32_t i = 0; i < polygon.size(); ++i) place_[patch.vertices[polygon[i]]] = i;
     }
 
     bool solve(std::uint32_t i, std::uint32_t j) {
         if (j == i + 1) return true;
         const std::uint64_t key = (static_cast<std::uint64_t>(i) << 32) | j;
-        if (const auto known = apex_.find(key); known != apex_.end()) return known->second != no_index;
-        std::vector<std::uint32_t> link;
-        mesh_.triangulation.find_link(patch_.vertices[polygon_[i]], patch_.vertices[polygon_[j]], link);
-        std::vector<std::uint32_t> candidates;
-        for (const std::uint32_t v : link) {
+        if (const auto known = apex_.find(key); known != apex_.end()) return known->second.place != no_index;
+        mesh_.triangulation.find_link(patch_.vertices[polygon_[i]], patch_.vertices[polygon_[j]], link_);
+        std::vector<Apex> candidates;
+        for (const auto& [v, face] : link_) {
             const auto k = place_.find(v);
-            if (k != place_.end() && k->second > i && k->second < j) candidates.push_back(k->second);
+            if (k != place_.end() && k->second > i && k->second < j) candidates.push_back({k->second, face});
         }
-        std::sort(candidates.begin(), candidates.end());
-        std::uint32_t found = no_index;
-        for (const std::uint32_t k : candidates) {
-            if (fits(i, k, j) && solve(i, k) && solve(k, j)) {
-                found = k;
+        std::sort(candidates.begin(), candidates.end(), [](const Apex& l, const Apex& r) { return l.place < r.place; });
+        Apex found;
+        for (const Apex& apex : candidates) {
+            if (fits(i, apex.place, j) && solve(i, apex.place) && solve(apex.place, j)) {
+                found = apex;
                 break;
             }
         }
         apex_[key] = found;
-        return found != no_index;
+        return found.place != no_index;
     }
 
     bool fits(std::uint32_t i, std::uint32_t k, std::uint32_t j) const {
         const auto at = [&](std::uint32_t p) {
             return exact::Point2{patch_.points[polygon_[p]].x, patch_.points[polygon_[p]].y};
         };
+        if (!sides_.empty() && (sides_[i] & sides_[k] & sides_[j]) != 0) return false;
         if (exact::orient2d(at(i), at(k), at(j)) <= 0) return false;
-        return !gabriel_ || patch_.is_present({polygon_[i], polygon_[k], polygon_[j]}, true);
+        return !gabriel_ || patch_.find_present({polygon_[i], polygon_[k], polygon_[j]}, true).cell != nullptr;
     }
 
-    void collect(std::uint32_t i, std::uint32_t j, std::vector<Corners>& triangles) const {
+    void collect(std::uint32_t i, std::uint32_t j, std::vector<Corners>& triangles,
+                 std::vector<delaunay::FaceHandle>& faces) const {
         if (j == i + 1) return;
-        const std::uint32_t k = apex_.at((static_cast<std::uint64_t>(i) << 32) | j);
+        const auto [k, face] = apex_.at((static_cast<std::uint64_t>(i) << 32) | j);
         triangles.push_back({polygon_[i], polygon_[k], polygon_[j]});
-        collect(i, k, triangles);
-        collect(k, j, triangles);
+        faces.push_back(face);
+        collect(i, k, triangles, faces);
+        collect(k, j, triangles, faces);
     }
 
 private:
+    struct Apex {
+        std::uint32_t place = no_index;  // none: nothing tiles what is beyond the chord
+        delaunay::FaceHandle face;
+    };
+
     const MeshState& mesh_;
     const FacetPatch& patch_;
     const std::vector<std::uint32_t>& polygon_;
     bool gabriel_;
+    std::vector<std::uint8_t> sides_;
     std::unordered_map<std::uint32_t, std::uint32_t> place_;
-    std::unordered_map<std::uint64_t, std::uint32_t> apex_;
+    std::unordered_map<std::uint64_t, Apex> apex_;
+    std::vector<delaunay::Delaunay3::LinkFace> link_;
 };
 
 // The outline of a set of triangles as a counter-clockwise ring; empty when it is no simple ring.
@@ -166,24 +181,25 @@ void FacetPatch::collect(const MeshState& mesh) {
     for (const std::uint32_t v : vertices) points.push_back(flatten(mesh.triangulation.position(v)));
 }
 
-bool FacetPatch::is_present(const Corners& triangle, bool gabriel) const {
+delaunay::FaceHandle FacetPatch::find_present(const Corners& triangle, bool gabriel) const {
     const std::uint32_t a = vertices[triangle[0]], b = vertices[triangle[1]], c = vertices[triangle[2]];
-    if (!gabriel) return mesh_->triangulation.has_face(a, b, c);
-    std::array<std::uint32_t, 2> apexes;
-    if (!mesh_->triangulation.find_apexes(a, b, c, apexes)) return false;
-    return std::none_of(apexes.begin(), apexes.end(), [&](std::uint32_t v) {
-        return v != no_index &&
-               delaunay::is_inside_diametral_ball(mesh_->triangulation.position(v), mesh_->triangulation.position(a),
-                                                  mesh_->triangulation.position(b), mesh_->triangulation.position(c));
+    const delaunay::Delaunay3& mesh = mesh_->triangulation;
+    const delaunay::FaceHandle face = mesh.find_face(a, b, c);
+    if (!gabriel || face.cell == nullptr) return face;
+    const std::array<std::uint32_t, 2> apexes = mesh.apexes_of(face);
+    const bool is_entered = std::any_of(apexes.begin(), apexes.end(), [&](std::uint32_t v) {
+        return v != no_index && delaunay::is_inside_diametral_ball(mesh.position(v), mesh.position(a), mesh.position(b),
+                                                                   mesh.position(c));
     });
+    return is_entered ? delaunay::FaceHandle{} : face;
 }
 
-void FacetPatch::settle_ties(const std::vector<Corners>& neighbors, std::vector<std::uint8_t>& present, bool gabriel) {
+void FacetPatch::settle_ties(const std::vector<Corners>& neighbors, bool gabriel) {
     constexpr double tie = 1e-8;  // of the radius; a generous group costs a search, never a wrong answer
     std::vector<std::uint32_t> group_of(triangles.size(), no_index);
     const std::vector<Corners> before = triangles;
     for (std::uint32_t seed = 0; seed < before.size(); ++seed) {
-        if (present[seed] != 0 || group_of[seed] != no_index) continue;
+        if (faces[seed].cell != nullptr || group_of[seed] != no_index) continue;
         const Missing circle = circumscribe(points[before[seed][0]], points[before[seed][1]], points[before[seed][2]]);
         std::vector<std::uint32_t> group{seed};
         group_of[seed] = seed;
@@ -205,12 +221,62 @@ void FacetPatch::settle_ties(const std::vector<Corners>& neighbors, std::vector<
         TieSolver solver(*mesh_, *this, ring, gabriel);
         if (!solver.solve(0, static_cast<std::uint32_t>(ring.size() - 1))) continue;
         std::vector<Corners> tiles;
-        solver.collect(0, static_cast<std::uint32_t>(ring.size() - 1), tiles);
+        std::vector<delaunay::FaceHandle> tile_faces;
+        solver.collect(0, static_cast<std::uint32_t>(ring.size() - 1), tiles, tile_faces);
         for (std::size_t i = 0; i < group.size(); ++i) {
             triangles[group[i]] = tiles[i];
-            present[group[i]] = is_present(tiles[i], gabriel) ? 1 : 0;
+            faces[group[i]] = tile_faces[i];
         }
     }
+}
+
+// For a triangle: per planar point of a ring, a bit for each side that it lies on.
+std::vector<std::uint8_t> FacetPatch::sides_of(const std::vector<std::uint32_t>& ring) const {
+    const auto sides = mesh_->complex.facet_sides[facet];
+    std::vector<std::uint8_t> of_point(vertices.size(), 0), result;
+    for (std::size_t e = 0; e < edges.size(); ++e) {
+        for (std::size_t s = 0; s < sides.size(); ++s) {
+            if (sides[s].segment != mesh_->pieces[pieces[e]].owner) continue;
+            of_point[edges[e].a] |= static_cast<std::uint8_t>(1u << s);
+            of_point[edges[e].b] |= static_cast<std::uint8_t>(1u << s);
+        }
+    }
+    for (const std::uint32_t p : ring) result.push_back(of_point[p]);
+    return result;
+}
+
+// A triangle of which only sides were cut, where the mesh has all of it already: most facets, and for them there is no
+// need to triangulate anything.
+bool FacetPatch::tile_triangle(bool gabriel) {
+    const FacetWork* work = mesh_->find_work(facet);
+    if (work != nullptr && (!work->points.empty() || !work->shields.empty())) return false;
+    if (!triangle_of(mesh_->complex, facet) || edges.size() != vertices.size()) return false;
+    constexpr std::uint32_t none = no_index;
+    std::vector<std::array<std::uint32_t, 2>> beside(vertices.size(), {none, none});
+    for (const delaunay::PlanarEdge& e : edges) {
+        for (const auto& [from, to] : {std::pair{e.a, e.b}, std::pair{e.b, e.a}}) {
+            beside[from][beside[from][0] == none ? 0 : 1] = to;
+        }
+    }
+    std::vector<std::uint32_t> ring{0};
+    double area = 0.0;
+    for (std::uint32_t last = none, v = 0;;) {
+        const std::uint32_t next = beside[v][beside[v][0] == last ? 1 : 0];
+        if (next == none || ring.size() > vertices.size()) return false;
+        area += points[v].x * points[next].y - points[v].y * points[next].x;
+        if (next == 0) break;
+        ring.push_back(next);
+        last = std::exchange(v, next);
+    }
+    if (ring.size() != vertices.size()) return false;
+    if (area < 0.0) std::reverse(ring.begin(), ring.end());
+    TieSolver solver(*mesh_, *this, ring, gabriel, sides_of(ring));
+    const auto last = static_cast<std::uint32_t>(ring.size() - 1);
+    if (!solver.solve(0, last)) return false;
+    triangles.clear();
+    faces.clear();
+    solver.collect(0, last, triangles, faces);
+    return true;
 }
 
 FacetPatch::State FacetPatch::build(const MeshState& mesh, std::uint32_t f, bool gabriel) {
@@ -219,19 +285,20 @@ FacetPatch::State FacetPatch::build(const MeshState& mesh, std::uint32_t f, bool
     frame_ = &mesh.complex.frames[f];
     missing.clear();
     collect(mesh);
+    if (tile_triangle(gabriel)) return State::complete;
     delaunay::PlanarTriangulation planar = delaunay::triangulate_region(points, edges);
     if (!planar.valid) return State::invalid;
     triangles = std::move(planar.triangles);
-    std::vector<std::uint8_t> present(triangles.size());
+    faces.clear();
     bool complete = true;
-    for (std::size_t t = 0; t < triangles.size(); ++t) {
-        present[t] = is_present(triangles[t], gabriel) ? 1 : 0;
-        complete = complete && present[t] != 0;
+    for (const Corners& t : triangles) {
+        faces.push_back(find_present(t, gabriel));
+        complete = complete && faces.back().cell != nullptr;
     }
     if (complete) return State::complete;
-    settle_ties(planar.neighbors, present, gabriel);
+    settle_ties(planar.neighbors, gabriel);
     for (std::uint32_t t = 0; t < triangles.size(); ++t) {
-        if (present[t] != 0) continue;
+        if (faces[t].cell != nullptr) continue;
         Missing circle = circumscribe(points[triangles[t][0]], points[triangles[t][1]], points[triangles[t][2]]);
         circle.triangle = t;
         missing.push_back(circle);

@@ -33,10 +33,11 @@ public:
     std::vector<std::uint32_t> pieces;          ///< parallel to `edges`
     std::vector<delaunay::PlanarEdge> edges;
     std::vector<std::array<std::uint32_t, 3>> triangles;  ///< over planar points, counter-clockwise
+    std::vector<delaunay::FaceHandle> faces;              ///< parallel to `triangles`; null where missing
     std::vector<Missing> missing;                         ///< largest radius first
 
-    /// Whether a triangle over planar points is a face of the mesh, and with `gabriel` its diametral ball is empty.
-    bool is_present(const std::array<std::uint32_t, 3>& triangle, bool gabriel) const;
+    /// The face of the mesh that a triangle over planar points is; with `gabriel` only if its diametral ball is empty.
+    delaunay::FaceHandle find_present(const std::array<std::uint32_t, 3>& triangle, bool gabriel) const;
 
     Point3 lift(const delaunay::PlanarPoint& p) const;
     delaunay::PlanarPoint flatten(const Point3& p) const;
@@ -46,8 +47,9 @@ private:
     const Frame* frame_ = nullptr;
 
     void collect(const MeshState& mesh);
-    void settle_ties(const std::vector<std::array<std::uint32_t, 3>>& neighbors, std::vector<std::uint8_t>& present,
-                     bool gabriel);
+    bool tile_triangle(bool gabriel);
+    std::vector<std::uint8_t> sides_of(const std::vector<std::uint32_t>& ring) const;
+    void settle_ties(const std::vector<std::array<std::uint32_t, 3>>& neighbors, bool gabriel);
 };
 
 /// Circumcentre and radius in the plane; radius infinity for points on a line.

@@ -134,9 +134,11 @@ void MeshState::cut(std::uint32_t id, std::uint32_t vertex) {
     } else {
         for (const std::uint32_t facet : complex.segment_facets[whole.owner]) queue_facet(facet);
     }
-    for (const std::uint32_t part : {id, other}) {
-        if (!is_satisfied(pieces[part])) queue_piece(part);
-    }
+    const auto is_there = [&](const Piece& part, std::uint32_t end) {
+        return part.rule == PieceRule::present ? triangulation.is_beside_last(end) : is_satisfied(part);
+    };
+    if (!is_there(pieces[id], whole.a)) queue_piece(id);
+    if (!is_there(pieces[other], whole.b)) queue_piece(other);
 }
 
 void MeshState::find_encroached(const Point3& place, std::uint32_t near, std::vector<std::uint32_t>& found) {
@@ -155,7 +157,10 @@ void MeshState::find_encroached(const Point3& place, std::uint32_t near, std::ve
 }
 
 bool MeshState::mark(std::uint32_t facet, const std::array<std::uint32_t, 3>& triangle) {
-    return triangulation.mark_face(triangle[0], triangle[1], triangle[2], facet);
+    const delaunay::FaceHandle face = triangulation.find_face(triangle[0], triangle[1], triangle[2]);
+    if (face.cell == nullptr) return false;
+    triangulation.mark_face(face, facet);
+    return true;
 }
 
 void MeshState::queue_piece(std::uint32_t piece) {
@@ -186,12 +191,12 @@ std::uint32_t MeshState::pop_piece() {
 
 bool MeshState::is_satisfied(const Piece& piece) const {
     if (piece.rule == PieceRule::present) return triangulation.has_edge(piece.a, piece.b);
-    std::vector<std::uint32_t> link;
+    std::vector<delaunay::Delaunay3::LinkFace> link;
     triangulation.find_link(piece.a, piece.b, link);
     if (link.empty()) return false;
     const Point3 &a = triangulation.position(piece.a), &b = triangulation.position(piece.b);
     return std::none_of(link.begin(), link.end(),
-                        [&](std::uint32_t v) { return encroaches(triangulation.position(v), a, b, rounding); });
+                        [&](const auto& f) { return encroaches(triangulation.position(f.vertex), a, b, rounding); });
 }
 
 void MeshState::find_facets(std::uint32_t vertex, std::vector<std::uint32_t>& facets) const {

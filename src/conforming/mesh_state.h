@@ -55,7 +55,7 @@ public:
     };
     /// Inserts a point and puts pieces and facets that it touches into the queues.
     Inserted insert(const Point3& place, std::uint32_t near, const Owner& owner);
-    /// Cuts a piece at a vertex on it; queues what depends on it.
+    /// Cuts a piece at the vertex on it that was inserted last; queues what depends on it.
     void cut(std::uint32_t piece, std::uint32_t vertex);
     /// The pieces with the Gabriel rule whose diametral ball a point would enter, if it were inserted.
     void find_encroached(const Point3& place, std::uint32_t near, std::vector<std::uint32_t>& found);

@@ -31,10 +31,11 @@ double crossing_of(const PlanarPoint& p, const PlanarPoint& q, const PlanarPoint
     return side_p / (side_p - side_q);
 }
 
-/// Few pieces as they come; many in rounds, each about as large as all before it together and along a Morton curve: a
-/// first point in a wide gap removes many cells, so first points should be few and far between.
-std::vector<std::uint32_t> spread_out(const MeshState& mesh, const std::vector<std::uint32_t>& ids) {
-    if (ids.size() < 20'000) return ids;
+/// Few pieces as they come; many in rounds, each about as large as all before it together and along a Morton
+/// curve: a first point in a wide gap removes many cells, so first points should be few and far between.
+void spread_out(MeshState& mesh) {
+    std::deque<std::uint32_t>& ids = mesh.piece_queue;
+    if (ids.size() < 20'000) return;
     Point3 low = mesh.complex.points[0], high = low;
     for (const Point3& p : mesh.complex.points) {
         low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
@@ -55,9 +56,8 @@ std::vector<std::uint32_t> spread_out(const MeshState& mesh, const std::vector<s
         while (round > 0 && random.coin()) --round;
         rounds[round].push_back(id);
     }
-    std::vector<std::uint32_t> order;
-    for (const auto& round : rounds) order.insert(order.end(), round.begin(), round.end());
-    return order;
+    ids.clear();
+    for (const auto& round : rounds) ids.insert(ids.end(), round.begin(), round.end());
 }
 
 constexpr const char* pile_up = "points pile up without an end in sight";
@@ -132,7 +132,7 @@ bool Recovery::insert_point(const Point3& place, std::uint32_t near, const Owner
     return inserted.outcome == MeshState::Insertion::done;
 }
 
-bool Recovery::split(std::uint32_t id, const Point3* reference) {
+bool Recovery::split(std::uint32_t id, const Point3* reference, std::uint32_t near) {
     const Piece piece = mesh_.pieces[id];
     Point3 place;
     Owner owner{!piece.shield, piece.owner};
@@ -145,7 +145,7 @@ bool Recovery::split(std::uint32_t id, const Point3* reference) {
         place = placement_.split_of(piece, reference);
     }
     std::uint32_t vertex = no_index;
-    if (!insert_point(place, piece.a, owner, vertex)) {
+    if (!insert_point(place, near == no_index ? piece.a : near, owner, vertex)) {
         fail(Outcome::below_min_feature, true, {piece.shield ? ElementKind::facet : ElementKind::segment, piece.owner},
              vertex, place, "a point would come closer than the smallest feature to another one");
         return false;
@@ -164,10 +164,10 @@ void Recovery::split_missing(std::uint32_t id) {
     const Point3 middle = a + 0.5 * (b - a);
     const std::uint32_t nearest = mesh_.triangulation.find_nearest(middle, piece.a);
     if (nearest == piece.a || nearest == piece.b) {
-        split(id, nullptr);
+        split(id, nullptr, piece.a);
     } else {
         const Point3 reference = mesh_.triangulation.position(nearest);
-        split(id, &reference);
+        split(id, &reference, nearest);
     }
 }
 
@@ -202,9 +202,10 @@ bool Recovery::settle_facet(std::uint32_t facet) {
     }
     std::vector<std::array<std::uint32_t, 3>>& kept = mesh_.work_of(facet).triangles;
     kept.clear();
-    for (const auto& t : patch_.triangles) {
+    for (std::size_t i = 0; i < patch_.triangles.size(); ++i) {
+        const auto& t = patch_.triangles[i];
         kept.push_back({patch_.vertices[t[0]], patch_.vertices[t[1]], patch_.vertices[t[2]]});
-        CERTA_ASSERT(mesh_.mark(facet, kept.back()));
+        mesh_.triangulation.mark_face(patch_.faces[i], facet);
     }
     return true;
 }
@@ -380,24 +381,23 @@ void Recovery::survey(std::span<const std::uint8_t> present) {
     std::vector<std::uint8_t> seen(c.segments.size(), 0);
     for (std::uint32_t f = 0; f < c.frames.size(); ++f) {
         if (c.facet_sides[f].empty()) continue;
-        const bool known = !present.empty() && present[f] != 0 && !options_.gabriel;
-        if (known) {
+        const bool is_known = !present.empty() && !options_.gabriel;
+        if (is_known && present[f] != 0) {
             for (const Side& side : c.facet_sides[f]) seen[side.segment] = 1;
-        } else if (!settle_facet(f)) {
+        } else if ((is_known && triangle_of(c, f)) || !settle_facet(f)) {
             mesh_.queue_facet(f);
             ++result_.missing_facets;
         }
         if (is_over()) return;
     }
-    std::vector<std::uint32_t> missing;
     for (std::uint32_t id = 0; id < mesh_.pieces.size(); ++id) {
         const Piece& piece = mesh_.pieces[id];
         if (!piece.shield && seen[piece.owner] != 0 && piece.rule == PieceRule::present) continue;
         if (mesh_.is_satisfied(piece)) continue;
-        missing.push_back(id);
+        mesh_.queue_piece(id);
         if (!piece.shield) ++result_.missing_segments;
     }
-    for (const std::uint32_t id : spread_out(mesh_, missing)) mesh_.queue_piece(id);
+    spread_out(mesh_);
 }
 
 RecoveryResult Recovery::run(std::span<const std::uint8_t> present) {

@@ -39,47 +39,25 @@ using Facet = Triangulation::Facet;
 
 Kernel::Point_3 to_cgal(const Point3& p) { return {p.x, p.y, p.z}; }
 
-// The edges of one conflict zone: small, filled and read out all the time. Emptied by a new stamp.
-class EdgeSet {
+// Pairs among the few vertices of one conflict zone, as a matrix of bits: filled and read out with every insertion.
+class PairMatrix {
 public:
-    struct Slot {
-        std::uint32_t a = 0, b = 0, stamp = 0;
-    };
-
-    void clear() {
-        ++stamp_;
-        size_ = 0;
+    void clear(std::size_t size) {
+        words_ = (size + 63) / 64;
+        bits_.assign(size * words_, 0);
     }
-    /// True when ab (a < b) was not there yet.
-    bool insert(std::uint32_t a, std::uint32_t b) {
-        if (2 * (size_ + 1) > slots_.size()) grow();
-        for (std::size_t i = slot_of(a, b);; i = (i + 1) & (slots_.size() - 1)) {
-            Slot& slot = slots_[i];
-            if (slot.stamp != stamp_) {
-                slot = {a, b, stamp_};
-                ++size_;
-                return true;
-            }
-            if (slot.a == a && slot.b == b) return false;
-        }
+    /// True when ij was not there yet. Callers give the two always in the same order.
+    bool insert(std::uint32_t i, std::uint32_t j) {
+        std::uint64_t& word = bits_[i * words_ + j / 64];
+        const std::uint64_t bit = std::uint64_t{1} << (j % 64);
+        const bool is_new = (word & bit) == 0;
+        word |= bit;
+        return is_new;
     }
 
 private:
-    std::size_t slot_of(std::uint32_t a, std::uint32_t b) const {
-        return ((a * 0x9e3779b1u) ^ (b * 0x85ebca77u)) >> 7 & (slots_.size() - 1);
-    }
-    void grow() {
-        std::vector<Slot> old(std::max<std::size_t>(256, 2 * slots_.size()));
-        old.swap(slots_);
-        size_ = 0;
-        for (const Slot& slot : old) {
-            if (slot.stamp == stamp_) insert(slot.a, slot.b);
-        }
-    }
-
-    std::vector<Slot> slots_;
-    std::size_t size_ = 0;
-    std::uint32_t stamp_ = 1;
+    std::vector<std::uint64_t> bits_;
+    std::size_t words_ = 0;
 };
 
 }  // namespace
@@ -92,9 +70,12 @@ struct Delaunay3::Impl {
 
     ConflictZone zone;
     Point3 place;
-    EdgeSet edges;
-    std::vector<std::uint32_t> vertex_stamps;
-    std::uint32_t vertex_stamp = 0;
+    PairMatrix pairs;
+    struct Place {
+        std::uint32_t stamp = 0, index = 0;
+    };
+    std::vector<Place> places_in_zone;  // per vertex: where zone.vertices holds it, if the stamp is the last one
+    std::uint32_t zone_stamp = 0;
     std::vector<Facet> hole;
     std::vector<CellHandle> conflict;
     std::vector<Facet> inner;
@@ -121,8 +102,30 @@ struct Delaunay3::Impl {
         return {};
     }
 
+    // A cell with edge ab, or none. The cells around a tile the directions from a, and a cell that has b in its closed
+    // cone has it as a vertex, or nothing has: so a walk decides, unless it comes to the hull.
     CellHandle find_cell(VertexHandle a, VertexHandle b) const {
-        return find_in_star(a, [&](CellHandle cell) { return cell->has_vertex(b); });
+        CellHandle cell = a->cell(), last;
+        for (int steps = 0; steps < 50; ++steps) {
+            if (cell->has_vertex(b)) return cell;
+            if (triangulation.is_infinite(cell)) break;
+            const CellHandle next = step_to(cell, last, a, b);
+            if (next == CellHandle()) return {};
+            last = std::exchange(cell, next);
+        }
+        return find_in_star(a, [&](CellHandle c) { return c->has_vertex(b); });
+    }
+
+    // The cell around a behind a face that b lies strictly behind; none where b is in the cell's closed cone.
+    CellHandle step_to(CellHandle cell, CellHandle last, VertexHandle a, VertexHandle b) const {
+        for (int k = 0; k < 4; ++k) {
+            if (cell->vertex(k) == a || cell->neighbor(k) == last) continue;
+            std::array<const Kernel::Point_3*, 4> corners;
+            for (int i = 0; i < 4; ++i) corners[i] = &(i == k ? b : cell->vertex(i))->point();
+            if (CGAL::orientation(*corners[0], *corners[1], *corners[2], *corners[3]) == CGAL::NEGATIVE)
+                return cell->neighbor(k);
+        }
+        return {};
     }
 
     // Face abc as (cell, index), or a null cell.
@@ -144,6 +147,11 @@ struct Delaunay3::Impl {
         return {};
     }
 
+    Facet facet_of(const FaceHandle& face) const {
+        using Cell = Structure::Cell;
+        return {triangulation.tds().cells().iterator_to(*static_cast<Cell*>(face.cell)), face.index};
+    }
+
     std::uint32_t id_of(VertexHandle v) const { return triangulation.is_infinite(v) ? no_index : v->info(); }
 
     void fill_zone() {
@@ -152,32 +160,29 @@ struct Delaunay3::Impl {
         zone.border_edges.clear();
         zone.removed_marks.clear();
         zone.border_marks.clear();
-        vertex_stamps.resize(handles.size(), 0);
-        ++vertex_stamp;
-        edges.clear();
+        places_in_zone.resize(handles.size());
+        ++zone_stamp;
+        for (const CellHandle cell : conflict) {
+            for (int i = 0; i < 4; ++i) {
+                const std::uint32_t v = id_of(cell->vertex(i));
+                if (v == no_index || places_in_zone[v].stamp == zone_stamp) continue;
+                places_in_zone[v] = {zone_stamp, static_cast<std::uint32_t>(zone.vertices.size())};
+                zone.vertices.push_back(v);
+            }
+        }
+        pairs.clear(zone.vertices.size());
         // Edges around the zone first: what the cells add after that is inside.
         for (const Facet& face : hole) {
             std::array<std::uint32_t, 3> ids;
             for (int i = 0; i < 3; ++i) ids[i] = id_of(face.first->vertex((face.second + i + 1) & 3));
-            std::sort(ids.begin(), ids.end());
-            add_edge(ids[0], ids[1], zone.border_edges);
-            add_edge(ids[1], ids[2], zone.border_edges);
-            add_edge(ids[0], ids[2], zone.border_edges);
+            add_edges(ids, zone.border_edges);
             const std::uint32_t mark = face.first->info().marks[face.second];
             if (mark != no_index) zone.border_marks.push_back(mark);
         }
         for (const CellHandle cell : conflict) {
             std::array<std::uint32_t, 4> ids;
             for (int i = 0; i < 4; ++i) ids[i] = id_of(cell->vertex(i));
-            std::sort(ids.begin(), ids.end());
-            for (int i = 0; i < 4; ++i) {
-                if (ids[i] == no_index) continue;
-                if (vertex_stamps[ids[i]] != vertex_stamp) {
-                    vertex_stamps[ids[i]] = vertex_stamp;
-                    zone.vertices.push_back(ids[i]);
-                }
-                for (int j = i + 1; j < 4; ++j) add_edge(ids[i], ids[j], zone.edges);
-            }
+            add_edges(ids, zone.edges);
         }
         for (const Facet& face : inner) {
             const std::uint32_t mark = face.first->info().marks[face.second];
@@ -188,9 +193,19 @@ struct Delaunay3::Impl {
         std::sort(zone.border_marks.begin(), zone.border_marks.end());
     }
 
-    void add_edge(std::uint32_t a, std::uint32_t b, std::vector<std::array<std::uint32_t, 2>>& list) {
-        if (b != no_index && edges.insert(a, b)) list.push_back({a, b});
+    template <std::size_t N>
+    void add_edges(std::array<std::uint32_t, N> ids, std::vector<std::array<std::uint32_t, 2>>& list) {
+        std::sort(ids.begin(), ids.end());
+        for (std::size_t i = 0; i + 1 < N; ++i) {
+            for (std::size_t j = i + 1; j < N && ids[j] != no_index; ++j) {
+                if (pairs.insert(places_in_zone[ids[i]].index, places_in_zone[ids[j]].index))
+                    list.push_back({ids[i], ids[j]});
+            }
+        }
     }
+
+    std::uint32_t flood_components();
+    std::vector<std::array<std::uint32_t, 2>> collect_walls() const;
 
     void release_conflicts() {
         for (const CellHandle cell : conflict) cell->tds_data().clear();
@@ -260,22 +275,40 @@ std::uint32_t Delaunay3::find_nearest(const Point3& place, std::uint32_t near) c
     // Of a vertex and its neighbours in a Delaunay triangulation, the vertex is the nearest only if it is so of all.
     std::uint32_t nearest = near;
     double best = measure(near);
-    for (std::uint32_t from = no_index; from != nearest;) {
-        from = nearest;
-        s.find_in_star(s.handles[from], [&](CellHandle cell) {
+    bool tie = false;
+    const auto find_nearer = [&](std::uint32_t from) {
+        tie = false;
+        return s.find_in_star(s.handles[from], [&](CellHandle cell) {
+            bool found = false;
             for (int i = 0; i < 4; ++i) {
                 const std::uint32_t v = s.id_of(cell->vertex(i));
                 if (v == no_index || v == nearest) continue;
                 const double d = measure(v);
-                if (d < best || (d == best && v < nearest)) {
-                    best = d;
-                    nearest = v;
-                }
+                tie = tie || d == best;
+                if (d >= best) continue;
+                best = d;
+                nearest = v;
+                found = true;
+            }
+            return found;
+        });
+    };
+    while (find_nearer(nearest) != CellHandle()) {
+    }
+    if (!tie) return nearest;
+    // Vertices on one empty sphere hang together by edges.
+    std::vector<std::uint32_t> equals{nearest};
+    for (std::size_t i = 0; i < equals.size(); ++i) {
+        s.find_in_star(s.handles[equals[i]], [&](CellHandle cell) {
+            for (int k = 0; k < 4; ++k) {
+                const std::uint32_t v = s.id_of(cell->vertex(k));
+                if (v == no_index || measure(v) != best) continue;
+                if (std::find(equals.begin(), equals.end(), v) == equals.end()) equals.push_back(v);
             }
             return false;
         });
     }
-    return nearest;
+    return *std::min_element(equals.begin(), equals.end());
 }
 
 std::uint32_t Delaunay3::insert_in_conflicts() {
@@ -308,13 +341,20 @@ bool Delaunay3::has_edge(std::uint32_t a, std::uint32_t b) const {
     return impl_->find_cell(impl_->handles[std::max(a, b)], impl_->handles[std::min(a, b)]) != CellHandle();
 }
 
-bool Delaunay3::has_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
-    return impl_->find_face(a, b, c).first != CellHandle();
+FaceHandle Delaunay3::find_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+    const Facet face = impl_->find_face(a, b, c);
+    return face.first == CellHandle() ? FaceHandle{} : FaceHandle{&*face.first, face.second};
 }
 
-void Delaunay3::find_link(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& link) const {
+bool Delaunay3::is_beside_last(std::uint32_t v) const {
+    // Its neighbours are the vertices of the zone that it was inserted into.
+    const Impl& s = *impl_;
+    return v < s.places_in_zone.size() && s.places_in_zone[v].stamp == s.zone_stamp;
+}
+
+void Delaunay3::find_link(std::uint32_t a, std::uint32_t b, std::vector<LinkFace>& link) const {
     link.clear();
-    const VertexHandle va = impl_->handles[a], vb = impl_->handles[b];
+    const VertexHandle va = impl_->handles[std::max(a, b)], vb = impl_->handles[std::min(a, b)];
     const CellHandle start = impl_->find_cell(va, vb);
     if (start == CellHandle()) return;
     auto around = impl_->triangulation.incident_facets(start, start->index(va), start->index(vb));
@@ -324,27 +364,33 @@ void Delaunay3::find_link(std::uint32_t a, std::uint32_t b, std::vector<std::uin
         for (int i = 0; i < 4; ++i) {
             const VertexHandle v = face.first->vertex(i);
             if (i != face.second && v != va && v != vb && !impl_->triangulation.is_infinite(v))
-                link.push_back(v->info());
+                link.push_back({v->info(), {&*face.first, face.second}});
         }
     } while (++around != begin);
 }
 
-bool Delaunay3::find_apexes(std::uint32_t a, std::uint32_t b, std::uint32_t c,
-                            std::array<std::uint32_t, 2>& apexes) const {
-    const Facet face = impl_->find_face(a, b, c);
-    if (face.first == CellHandle()) return false;
+std::array<std::uint32_t, 2> Delaunay3::apexes_of(const FaceHandle& handle) const {
+    const Facet face = impl_->facet_of(handle);
     const Facet mirror = impl_->triangulation.mirror_facet(face);
-    apexes = {impl_->id_of(face.first->vertex(face.second)), impl_->id_of(mirror.first->vertex(mirror.second))};
-    return true;
+    return {impl_->id_of(face.first->vertex(face.second)), impl_->id_of(mirror.first->vertex(mirror.second))};
 }
 
-bool Delaunay3::mark_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t mark) {
-    const Facet face = impl_->find_face(a, b, c);
-    if (face.first == CellHandle()) return false;
+void Delaunay3::mark_face(const FaceHandle& handle, std::uint32_t mark) {
+    const Facet face = impl_->facet_of(handle);
     const Facet mirror = impl_->triangulation.mirror_facet(face);
     face.first->info().marks[face.second] = mark;
     mirror.first->info().marks[mirror.second] = mark;
-    return true;
+}
+
+std::vector<std::uint32_t> Delaunay3::count_marks(std::size_t size) const {
+    std::vector<std::uint32_t> counts(size, 0);
+    for (const CellHandle cell : impl_->triangulation.all_cell_handles()) {
+        for (int i = 0; i < 4; ++i) {
+            const std::uint32_t mark = cell->info().marks[i];
+            if (mark != no_index && cell < cell->neighbor(i)) ++counts[mark];
+        }
+    }
+    return counts;
 }
 
 void Delaunay3::clear_marks() {
@@ -353,26 +399,14 @@ void Delaunay3::clear_marks() {
     }
 }
 
-Delaunay3::Cells Delaunay3::collect_cells() const {
-    const Triangulation& t = impl_->triangulation;
-    for (const CellHandle cell : t.all_cell_handles()) cell->info().component = no_index;
-    std::vector<CellHandle>& stack = impl_->stack;
-    using Key = std::array<std::uint32_t, 4>;
-    const auto key_of = [&](CellHandle cell) {
-        Key key;
-        for (int i = 0; i < 4; ++i) key[i] = impl_->id_of(cell->vertex(i));
-        std::sort(key.begin(), key.end());
-        return key;
-    };
-    // Returns the lowest cell by vertices: it makes the numbering independent of the order of cells in memory.
+// Numbers components in the order of cells in memory; 0 is the one at infinity.
+std::uint32_t Delaunay3::Impl::flood_components() {
     const auto flood = [&](CellHandle seed, std::uint32_t number) {
-        Key lowest = key_of(seed);
         stack.assign(1, seed);
         seed->info().component = number;
         while (!stack.empty()) {
             const CellHandle cell = stack.back();
             stack.pop_back();
-            lowest = std::min(lowest, key_of(cell));
             for (int i = 0; i < 4; ++i) {
                 const CellHandle next = cell->neighbor(i);
                 if (cell->info().marks[i] != no_index || next->info().component != no_index) continue;
@@ -380,43 +414,64 @@ Delaunay3::Cells Delaunay3::collect_cells() const {
                 stack.push_back(next);
             }
         }
-        return lowest;
     };
+    for (const CellHandle cell : triangulation.all_cell_handles()) cell->info().component = no_index;
     // Infinite cells touch each other across infinite faces, which carry no marks: they are one component.
-    flood(t.infinite_cell(), 0);
-    std::vector<std::pair<Key, std::uint32_t>> bounded;
-    for (const CellHandle cell : t.finite_cell_handles()) {
-        if (cell->info().component != no_index) continue;
-        const auto number = static_cast<std::uint32_t>(bounded.size() + 1);
-        bounded.emplace_back(flood(cell, number), number);
+    flood(triangulation.infinite_cell(), 0);
+    std::uint32_t count = 1;
+    for (const CellHandle cell : triangulation.finite_cell_handles()) {
+        if (cell->info().component == no_index) flood(cell, count++);
     }
-    std::sort(bounded.begin(), bounded.end());
-    std::vector<std::uint32_t> renumbered(bounded.size() + 1, 0);
-    for (std::uint32_t i = 0; i < bounded.size(); ++i) renumbered[bounded[i].second] = i + 1;
-    for (const CellHandle cell : t.all_cell_handles()) cell->info().component = renumbered[cell->info().component];
+    return count;
+}
 
+Delaunay3::Cells Delaunay3::collect_cells() const {
+    const Triangulation& t = impl_->triangulation;
     Cells cells;
-    cells.component_count = static_cast<std::uint32_t>(bounded.size() + 1);
+    cells.component_count = impl_->flood_components();
     cells.vertices.reserve(t.number_of_finite_cells());
     cells.components.reserve(t.number_of_finite_cells());
-    std::array<std::uint32_t, 2> last{no_index, no_index};
+    // The lowest cell of each component by its vertices makes the numbers independent of the order in memory.
+    using Key = std::array<std::uint32_t, 4>;
+    constexpr Key none{no_index, no_index, no_index, no_index};
+    std::vector<std::pair<Key, std::uint32_t>> lowest(cells.component_count, {none, 0});
     for (const CellHandle cell : t.finite_cell_handles()) {
         Key ids;
+        for (int i = 0; i < 4; ++i) ids[i] = cell->vertex(i)->info();
+        cells.vertices.push_back(ids);
+        const std::uint32_t component = cell->info().component;
+        cells.components.push_back(component);
+        Key& low = lowest[component].first;
+        if (std::none_of(ids.begin(), ids.end(), [&](std::uint32_t v) { return v <= low[0]; })) continue;
+        std::sort(ids.begin(), ids.end());
+        low = std::min(low, ids);
+    }
+    for (std::uint32_t i = 0; i < lowest.size(); ++i) lowest[i].second = i;
+    std::sort(lowest.begin() + 1, lowest.end());
+    std::vector<std::uint32_t> renumbered(cells.component_count);
+    for (std::uint32_t i = 0; i < lowest.size(); ++i) renumbered[lowest[i].second] = i;
+    for (std::uint32_t& component : cells.components) component = renumbered[component];
+    for (const CellHandle cell : t.all_cell_handles()) cell->info().component = renumbered[cell->info().component];
+    cells.walls = impl_->collect_walls();
+    return cells;
+}
+
+std::vector<std::array<std::uint32_t, 2>> Delaunay3::Impl::collect_walls() const {
+    std::vector<std::array<std::uint32_t, 2>> walls;
+    std::array<std::uint32_t, 2> last{no_index, no_index};
+    for (const CellHandle cell : triangulation.finite_cell_handles()) {
         for (int i = 0; i < 4; ++i) {
-            ids[i] = cell->vertex(i)->info();
             if (cell->info().marks[i] == no_index) continue;
             const CellHandle next = cell->neighbor(i);
             const std::uint32_t own = cell->info().component;
-            const std::uint32_t other = t.is_infinite(next) ? no_index : next->info().component;
+            const std::uint32_t other = triangulation.is_infinite(next) ? no_index : next->info().component;
             const std::array<std::uint32_t, 2> wall{std::min(own, other), std::max(own, other)};
-            if (wall != last) cells.walls.push_back(last = wall);
+            if (wall != last) walls.push_back(last = wall);
         }
-        cells.vertices.push_back(ids);
-        cells.components.push_back(cell->info().component);
     }
-    std::sort(cells.walls.begin(), cells.walls.end());
-    cells.walls.erase(std::unique(cells.walls.begin(), cells.walls.end()), cells.walls.end());
-    return cells;
+    std::sort(walls.begin(), walls.end());
+    walls.erase(std::unique(walls.begin(), walls.end()), walls.end());
+    return walls;
 }
 
 bool is_inside_diametral_ball(const Point3& p, const Point3& a, const Point3& b, const Point3& c) {

@@ -21,6 +21,12 @@ struct ConflictZone {
     std::vector<std::uint32_t> border_marks;                 ///< marks of the faces around the zone, which stay
 };
 
+/// A face of the triangulation, for as long as nothing is inserted.
+struct FaceHandle {
+    void* cell = nullptr;  ///< null: there is no such face
+    int index = 0;
+};
+
 class Delaunay3 {
 public:
     Delaunay3();
@@ -47,15 +53,27 @@ public:
     std::uint32_t find_nearest(const Point3& place, std::uint32_t near) const;
 
     bool has_edge(std::uint32_t a, std::uint32_t b) const;
-    bool has_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
-    /// The third vertices of the faces around edge ab; empty where ab is no edge.
-    void find_link(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& link) const;
-    /// For a face: the fourth vertices of the two cells on it (no_index outside the hull); false where it is none.
-    bool find_apexes(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::array<std::uint32_t, 2>& apexes) const;
+    FaceHandle find_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const;
+    bool has_face(std::uint32_t a, std::uint32_t b, std::uint32_t c) const {
+        return find_face(a, b, c).cell != nullptr;
+    }
+    /// Whether the vertex inserted last has an edge to v.
+    bool is_beside_last(std::uint32_t v) const;
+    /// A face around an edge, and its third vertex.
+    struct LinkFace {
+        std::uint32_t vertex = 0;
+        FaceHandle face;
+    };
+    /// The faces around edge ab; empty where ab is no edge.
+    void find_link(std::uint32_t a, std::uint32_t b, std::vector<LinkFace>& link) const;
+    /// The fourth vertices of the two cells on a face; no_index outside the hull.
+    std::array<std::uint32_t, 2> apexes_of(const FaceHandle& face) const;
 
-    /// Marks face abc, which must be present, with a number below no_index; returns false where it is absent.
-    bool mark_face(std::uint32_t a, std::uint32_t b, std::uint32_t c, std::uint32_t mark);
+    /// Marks a face with a number below no_index.
+    void mark_face(const FaceHandle& face, std::uint32_t mark);
     void clear_marks();
+    /// Number of faces with each mark below `size`.
+    std::vector<std::uint32_t> count_marks(std::size_t size) const;
 
     /// All finite cells, positively oriented, and the connected components that marked faces divide space into: 0 is
     /// the one at infinity, the others follow in the order of their lowest vertex.

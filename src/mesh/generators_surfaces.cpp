@@ -143,7 +143,10 @@ TriangleMesh make_helicoid(std::uint32_t fibres, std::uint32_t axial) {
 
 TriangleMesh make_noisy(TriangleMesh mesh, double distance, std::uint64_t seed) {
     Random random(seed);
-    for (Point3& p : mesh.positions) p = p + distance * std::cbrt(random.uniform()) * random_direction(random);
+    for (Point3& p : mesh.positions) {
+        const Point3 direction = random_direction(random);  // the order in one expression would be the compiler's
+        p = p + distance * std::cbrt(random.uniform()) * direction;
+    }
     return mesh;
 }
 
