@@ -251,6 +251,7 @@ void FamilyTracer::fill_gaps() {
 
 bool FamilyTracer::seed_usable(const Seed& seed) const {
     const Index h = mesh_.edge_halfedges[seed.edge];
+    if (!wanted_[mesh_.wedges[h]] && !wanted_[mesh_.wedges[next_of(h)]]) return false;
     const double spacing = spacing_at(h, seed.t);
     if (std::abs(direction(h, seed.t).imag()) < 0.15) return false;
     const Point3 p = mesh_.point_on(seed.edge, seed.t);

@@ -164,12 +164,16 @@ void orient(WorkMesh& work, RemeshStatistics& statistics) {
             }
         }
         const bool invert = 2 * flips > queue.size();
-        statistics.flipped_triangles += invert ? queue.size() - flips : flips;
         if (invert)
             for (const Index f : queue) turned[f] = 1 - turned[f];
     }
-    for (Index f = 0; f < count; ++f)
-        if (turned[f] == 1) std::swap(work.faces[f][1], work.faces[f][2]);
+    Index last = no_index;  // pieces of one triangle follow each other
+    for (Index f = 0; f < count; ++f) {
+        if (turned[f] != 1) continue;
+        std::swap(work.faces[f][1], work.faces[f][2]);
+        statistics.flipped_triangles += work.face_sources[f] != last ? 1 : 0;
+        last = work.face_sources[f];
+    }
 }
 
 /// One vertex per fan of faces.

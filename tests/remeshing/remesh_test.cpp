@@ -1,0 +1,333 @@
+// From triangles to polygons: topology, directions, features, counts, refusals, on surfaces whose answers are known.
+#include <certa/remeshing.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "core/random.h"
+#include "mesh/generators_surfaces.h"
+#include "remeshing/polygons.h"
+#include "remeshing/trace_lines.h"
+
+namespace certa::remeshing {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// A height field over [-1, 1]^2 on a jittered grid of n by n squares.
+template <class Height>
+TriangleMesh graph_of(std::uint32_t n, const Height& height) {
+    TriangleMesh mesh;
+    core::Random random(7);
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i <= n; ++i) {
+            const bool inner_x = i > 0 && i<n, inner_y = j> 0 && j < n;
+            const double x = -1.0 + (2.0 * i + (inner_x ? 0.6 * random.uniform() - 0.3 : 0.0)) / n;
+            const double y = -1.0 + (2.0 * j + (inner_y ? 0.6 * random.uniform() - 0.3 : 0.0)) / n;
+            mesh.positions.push_back({x, y, height(x, y)});
+        }
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const VertexId a{j * (n + 1) + i}, b{j * (n + 1) + i + 1}, c{(j + 1) * (n + 1) + i + 1},
+                d{(j + 1) * (n + 1) + i};
+            mesh.triangles.push_back({a, b, c});
+            mesh.triangles.push_back({a, c, d});
+        }
+    return mesh;
+}
+
+/// What a polygon mesh is, by counting: independent of the remesher's own counts.
+struct Shape {
+    std::int64_t euler = 0;
+    std::size_t open_edges = 0;
+    bool manifold = true;  ///< no side walked twice, no corner twice in a polygon
+};
+Shape shape_of(const PolygonMesh& mesh) {
+    Shape shape;
+    std::map<std::pair<std::uint32_t, std::uint32_t>, int> sides;
+    for (std::size_t p = 0; p + 1 < mesh.offsets.size(); ++p) {
+        std::vector<std::uint32_t> ring;
+        for (std::uint32_t i = mesh.offsets[p]; i < mesh.offsets[p + 1]; ++i) ring.push_back(index_of(mesh.corners[i]));
+        for (std::size_t k = 0; k < ring.size(); ++k)
+            if (++sides[{ring[k], ring[(k + 1) % ring.size()]}] > 1) shape.manifold = false;
+        std::sort(ring.begin(), ring.end());
+        if (ring.size() < 3 || std::adjacent_find(ring.begin(), ring.end()) != ring.end()) shape.manifold = false;
+    }
+    std::int64_t edges = 0;
+    for (const auto& [side, count] : sides) {
+        const bool open = !sides.contains({side.second, side.first});
+        shape.open_edges += open ? 1 : 0;
+        edges += open || side.first < side.second ? 1 : 0;
+    }
+    shape.euler =
+        static_cast<std::int64_t>(mesh.positions.size()) - edges + static_cast<std::int64_t>(mesh.offsets.size()) - 1;
+    return shape;
+}
+
+void expect_closed(const RemeshResult& result, std::int64_t euler) {
+    ASSERT_EQ(result.outcome, Outcome::done);
+    const Shape shape = shape_of(result.mesh);
+    EXPECT_EQ(shape.euler, euler);
+    EXPECT_EQ(shape.open_edges, 0U);
+    EXPECT_TRUE(shape.manifold);
+}
+
+struct Prepared {
+    RemeshStatistics statistics;
+    WorkMesh mesh;
+    DirectionField field;
+};
+Prepared prepare(const TriangleMesh& input, double edges) {
+    Prepared p;
+    p.mesh = build_work_mesh(input, {}, p.statistics);
+    p.field = measure_directions(p.mesh, {});
+    smooth_directions(p.mesh, p.field, edges * p.mesh.mean_edge, {});
+    return p;
+}
+int half_turns(const Prepared& p) {
+    int sum = 0;
+    for (const FieldUmbilic& u : p.field.umbilics) sum += u.half_turns;
+    return sum;
+}
+
+TEST(Umbilics, IndicesSumToTheCharacteristic) {
+    EXPECT_EQ(half_turns(prepare(generators::make_icosphere(3), 3.0)), 4);
+    EXPECT_EQ(half_turns(prepare(generators::make_torus(2.0, 0.7, 4000, 1), 3.0)), 0);
+    EXPECT_EQ(
+        half_turns(prepare(generators::make_noisy(generators::make_ellipsoid(2.0, 1.2, 0.8, 3000, 1), 0.01, 2), 3.0)),
+        4);
+    EXPECT_EQ(half_turns(prepare(generators::make_noisy(generators::make_grid_torus(2.0, 0.7, 60, 30), 0.03, 3), 1.0)),
+              0);
+}
+
+TEST(Umbilics, LieWhereTheoryPutsThem) {
+    EXPECT_TRUE(prepare(generators::make_torus(2.0, 0.7, 4000, 1), 5.0).field.umbilics.empty());
+    // Of the ellipsoid a > b > c: (a sqrt((a2 - b2) / (a2 - c2)), 0, c sqrt((b2 - c2) / (a2 - c2))) and reflections.
+    const double a = 2.0, b = 1.2, c = 0.8;
+    const Prepared p = prepare(generators::make_ellipsoid(a, b, c, 8000, 1), 5.0);
+    ASSERT_EQ(p.field.umbilics.size(), 4U);
+    const double x = a * std::sqrt((a * a - b * b) / (a * a - c * c)),
+                 z = c * std::sqrt((b * b - c * c) / (a * a - c * c));
+    for (const FieldUmbilic& u : p.field.umbilics) {
+        EXPECT_EQ(u.half_turns, 1);
+        const Point3 q = p.mesh.points[p.mesh.faces[u.face][0]];
+        EXPECT_LT(norm(Point3{std::abs(q.x) - x, q.y, std::abs(q.z) - z}), 0.15);
+    }
+    // The monkey saddle has one trisector in the middle.
+    const Prepared monkey =
+        prepare(graph_of(60, [](double u, double v) { return 0.25 * (u * u * u - 3.0 * u * v * v); }), 5.0);
+    ASSERT_EQ(monkey.field.umbilics.size(), 1U);
+    EXPECT_EQ(monkey.field.umbilics[0].half_turns, -1);
+    EXPECT_LT(norm(monkey.mesh.points[monkey.mesh.faces[monkey.field.umbilics[0].face][0]]), 0.1);
+}
+
+TEST(Lines, FollowTheTorus) {
+    RemeshOptions options;
+    options.vertices = 600;
+    options.lines = true;
+    const RemeshResult result = remesh(generators::make_torus(2.0, 0.7, 10000, 1), options);
+    double sum = 0.0, length = 0.0;
+    std::size_t closed = 0;
+    for (const CurvatureLine& line : result.lines) {
+        closed += line.closed ? 1 : 0;
+        for (std::size_t i = 0; i + 1 < line.points.size(); ++i) {
+            const Point3 d = line.points[i + 1] - line.points[i], p = line.points[i];
+            const Point3 around{-p.y / std::hypot(p.x, p.y), p.x / std::hypot(p.x, p.y), 0.0};
+            if (!(norm(d) > 0.0)) continue;
+            const double cosine = std::min(1.0, std::abs(dot(d, around)) / norm(d));
+            sum += norm(d) * (line.maximum ? std::asin(cosine) : std::acos(cosine));
+            length += norm(d);
+        }
+    }
+    EXPECT_LT(sum / length * 180.0 / pi, 1.5);
+    EXPECT_GT(closed, 10U);
+    EXPECT_TRUE(result.umbilics.empty());
+}
+
+/// Lines that run exactly through vertices and along edges are the hardest to keep apart.
+TEST(Network, ChordsOfAFamilyNeverCross) {
+    for (const TriangleMesh& input : {generators::make_grid_torus(2.0, 0.7, 48, 24), generators::make_icosphere(3),
+                                      generators::make_torus(2.0, 0.7, 2000, 3)}) {
+        const Prepared p = prepare(input, 3.0);
+        SpacingRule rule;
+        rule.error = 2e-3 * p.mesh.diagonal;
+        const Spacing spacing = compute_spacing(p.mesh, p.field, rule, {});
+        const Network network = trace_lines(p.mesh, p.field, spacing, {}, {});
+        std::size_t pairs = 0, crossings = 0;
+        for (Index f = 0; f < p.mesh.face_count(); ++f)
+            for (Index i = network.first_chord(f); i != no_index; i = network.chord(i).next)
+                for (Index j = network.chord(i).next; j != no_index; j = network.chord(j).next) {
+                    const Chord &a = network.chord(i), &b = network.chord(j);
+                    const bool cross = network.cross(a, b);
+                    if (network.family_of(a) == network.family_of(b)) {
+                        ++pairs;
+                        ASSERT_FALSE(cross);
+                    } else {
+                        crossings += cross ? 1 : 0;
+                    }
+                }
+        EXPECT_GT(pairs, 0U);
+        EXPECT_GT(crossings, 50U);
+        for (Index e = 0; e < p.mesh.edge_halfedges.size(); ++e) {
+            const auto& list = network.on_edge(e);
+            for (std::size_t k = 0; k + 1 < list.size(); ++k)
+                ASSERT_LT(network.crossing(list[k]).t, network.crossing(list[k + 1]).t);
+        }
+    }
+}
+
+/// One family alone leaves rings; the check must see them, and see nothing once both are there.
+TEST(Arrangement, FacesThatAreNoDisksAreFound) {
+    const Prepared p = prepare(generators::make_torus(2.0, 0.7, 3000, 1), 3.0);
+    SpacingRule rule;
+    rule.error = 4e-3 * p.mesh.diagonal;
+    const Spacing spacing = compute_spacing(p.mesh, p.field, rule, {});
+    Network network = trace_lines(p.mesh, p.field, spacing, {}, {});
+    Graph whole = build_graph(network, {rule.error});
+    simplify_graph(whole, network);
+    const auto faces = whole.trace_faces(p.mesh);
+    EXPECT_TRUE(find_flaws(whole, network, faces).empty());
+    std::size_t sides = 0;
+    for (const auto& face : faces) sides += face.size();
+    std::size_t edges = 0;
+    for (const GraphEdge& e : whole.edges) edges += e.alive() ? 1 : 0;
+    EXPECT_EQ(sides, 2 * edges);
+    // Keep two lines of each family: faces remain that run around the torus.
+    std::array<int, 2> kept{0, 0};
+    for (Index l = 0; l < network.lines().size(); ++l)
+        if (!network.lines()[l].closed ||
+            ++kept[network.lines()[l].family] > (network.lines()[l].family == along_max ? 1 : 2))
+            network.remove_line(l);
+    Graph few = build_graph(network, {rule.error});
+    EXPECT_EQ(find_flaws(few, network, few.trace_faces(p.mesh)).patches.empty(),
+              kept[along_min] > 0 && kept[along_max] > 0);
+    for (Index l = 0; l < network.lines().size(); ++l)
+        if (network.lines()[l].family == along_min) network.remove_line(l);
+    Graph none = build_graph(network, {rule.error});
+    EXPECT_EQ(find_flaws(none, network, none.trace_faces(p.mesh)).patches.size(), 1U);
+}
+
+TEST(Remesh, KeepsGenusAndClosedness) {
+    RemeshOptions options;
+    options.error = Length{5e-3, true};
+    const auto check = [&](const char* name, const TriangleMesh& mesh, std::int64_t euler) {
+        SCOPED_TRACE(name);
+        expect_closed(remesh(mesh, options), euler);
+    };
+    check("torus", generators::make_torus(2.0, 0.7, 5000, 1), 0);
+    check("grid torus", generators::make_grid_torus(2.0, 0.7, 40, 20), 0);
+    check("ellipsoid", generators::make_ellipsoid(2.0, 1.2, 0.8, 5000, 1), 2);
+    check("sphere", generators::make_icosphere(3), 2);
+    check("noise", generators::make_noisy(generators::make_ellipsoid(2.0, 1.2, 0.8, 5000, 1), 0.02, 4), 2);
+}
+
+TEST(Remesh, MeetsTheCountAndIsMostlyQuads) {
+    for (const std::uint64_t wanted : {300U, 900U}) {
+        RemeshOptions options;
+        options.vertices = wanted;
+        const RemeshResult result = remesh(generators::make_ellipsoid(2.0, 1.2, 0.8, 10000, 1), options);
+        expect_closed(result, 2);
+        EXPECT_NEAR(static_cast<double>(result.statistics.vertices), static_cast<double>(wanted), 0.05 * wanted);
+        EXPECT_GE(result.statistics.quads, 8 * result.statistics.faces / 10);
+    }
+}
+
+TEST(Remesh, ABoxIsSixFaces) {
+    RemeshOptions options;
+    options.output = RemeshOutput::polygons;
+    const RemeshResult result = remesh(generators::make_box(1.0, 2.0, 3.0), options);
+    expect_closed(result, 2);
+    EXPECT_EQ(result.mesh.positions.size(), 8U);
+    EXPECT_EQ(result.statistics.faces, 6U);
+    EXPECT_EQ(result.feature_edges.size(), 12U);
+    EXPECT_EQ(result.statistics.corners, 8U);
+}
+
+/// Boundary and tagged edges: sides of polygons lie on them, from end to end.
+TEST(Remesh, CoversBoundaryAndTaggedEdges) {
+    const std::uint32_t n = 30;
+    const TriangleMesh input = graph_of(n, [](double x, double y) { return 0.5 * (x * x - y * y); });
+    RemeshOptions options;
+    options.error = Length{2e-3, true};
+    options.placement = false;
+    for (std::uint32_t i = 0; i < n; ++i)  // the row in the middle
+        options.features.push_back({VertexId{n / 2 * (n + 1) + i}, VertexId{n / 2 * (n + 1) + i + 1}});
+    const RemeshResult result = remesh(input, options);
+    ASSERT_EQ(result.outcome, Outcome::done);
+    const Shape shape = shape_of(result.mesh);
+    EXPECT_EQ(shape.euler, 1);
+    EXPECT_TRUE(shape.manifold);
+    EXPECT_EQ(result.statistics.boundary_loops, 1U);
+    std::map<std::uint32_t, std::size_t> degree;
+    double rim = 0.0, row = 0.0;
+    for (const Edge& e : result.feature_edges) {
+        const Point3 a = result.mesh.positions[index_of(e[0])], b = result.mesh.positions[index_of(e[1])];
+        ++degree[index_of(e[0])], ++degree[index_of(e[1])];
+        const auto on_rim = [](const Point3& p) {
+            return std::abs(std::max(std::abs(p.x), std::abs(p.y)) - 1.0) < 1e-12;
+        };
+        (on_rim(a) && on_rim(b) ? rim : row) += std::hypot(a.x - b.x, a.y - b.y);
+    }
+    EXPECT_NEAR(rim, 8.0, 1e-9);
+    EXPECT_NEAR(row, 2.0, 0.1);  // jittered
+    for (const auto& [vertex, count] : degree) EXPECT_GE(count, 2U);
+    EXPECT_EQ(std::count_if(degree.begin(), degree.end(), [](const auto& d) { return d.second == 3; }), 2);
+}
+
+TEST(Remesh, DoesNotDependOnThreads) {
+    const TriangleMesh input = generators::make_ellipsoid(2.0, 1.2, 0.8, 4000, 1);
+    RemeshOptions options;
+    options.vertices = 300;
+    std::vector<RemeshResult> results;
+    for (const unsigned threads : {1U, 2U, 1U}) {
+        RunControl control;
+        control.threads = threads;
+        results.push_back(remesh(input, options, control));
+    }
+    for (const RemeshResult& result : results) {
+        EXPECT_EQ(result.mesh.positions, results[0].mesh.positions);
+        EXPECT_EQ(result.mesh.corners, results[0].mesh.corners);
+    }
+}
+
+TEST(Remesh, TurnsTrianglesAlikeAndSaysSo) {
+    TriangleMesh input = generators::make_torus(2.0, 0.7, 2000, 1);
+    for (std::size_t t = 0; t < 40; ++t) std::swap(input.triangles[t][0], input.triangles[t][1]);
+    const RemeshResult result = remesh(input, {});
+    expect_closed(result, 0);
+    EXPECT_EQ(result.statistics.flipped_triangles, 40U);
+}
+
+TEST(Remesh, RefusesWhatItCannotDo) {
+    // A strip of five triangles with a half twist.
+    TriangleMesh moebius;
+    for (int i = 0; i < 5; ++i) moebius.positions.push_back({std::cos(i * 0.4 * pi), std::sin(i * 0.4 * pi), 0.1 * i});
+    for (std::uint32_t i = 0; i < 5; ++i)
+        moebius.triangles.push_back({VertexId{i}, VertexId{(i + 1) % 5}, VertexId{(i + 2) % 5}});
+    EXPECT_THROW(remesh(moebius), InputError);
+    EXPECT_THROW(remesh(TriangleMesh{}), InputError);
+    TriangleMesh broken = generators::make_box(1.0, 1.0, 1.0);
+    broken.positions[3].y = std::nan("");
+    EXPECT_THROW(remesh(broken), InputError);
+    broken = generators::make_box(1.0, 1.0, 1.0);
+    broken.triangles[0][0] = VertexId{99};
+    EXPECT_THROW(remesh(broken), InputError);
+    RemeshOptions both;
+    both.vertices = 100;
+    both.error = Length{1.0, false};
+    EXPECT_THROW(remesh(generators::make_box(1.0, 1.0, 1.0), both), InputError);
+}
+
+TEST(Remesh, CanBeCancelled) {
+    std::atomic<bool> cancel{true};
+    RunControl control;
+    control.cancel = &cancel;
+    EXPECT_EQ(remesh(generators::make_icosphere(3), {}, control).outcome, Outcome::cancelled);
+}
+
+}  // namespace
+}  // namespace certa::remeshing
