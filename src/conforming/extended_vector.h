@@ -10,7 +10,7 @@ struct Vector {
     long double x = 0.0L, y = 0.0L, z = 0.0L;
 
     Vector() = default;
-    Vector(long double x_, long double y_, long double z_) : x(x_), y(y_), z(z_) {}
+    Vector(long double vx, long double vy, long double vz) : x(vx), y(vy), z(vz) {}
     explicit Vector(const Point3& p) : x(p.x), y(p.y), z(p.z) {}
 
     Point3 rounded() const { return {static_cast<double>(x), static_cast<double>(y), static_cast<double>(z)}; }

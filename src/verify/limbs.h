@@ -16,6 +16,7 @@ public:
     Limbs() = default;
     Limbs(const Limbs& other) { *this = other; }
     Limbs& operator=(const Limbs& other) {
+        if (this == &other) return *this;
         size_ = other.size_;
         std::memcpy(limbs_, other.limbs_, count() * sizeof(mp_limb_t));
         return *this;
