@@ -88,6 +88,7 @@ private:
     Draft draft(double error);
     void refine(const Flaws& flaws, const Graph& graph, const Spacing& spacing);
     std::vector<Index> crowded_vertices(const CoarseMesh& mesh) const;
+    CoarseMesh fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const;
     double count_of(const Draft& draft) const;
     void search();
     void finish();
@@ -196,6 +197,34 @@ std::vector<Index> Remesher::crowded_vertices(const CoarseMesh& mesh) const {
     return crowded;
 }
 
+/// Polygons in which two vertices of a crowded edge are not neighbours become triangles around a new vertex.
+CoarseMesh Remesher::fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const {
+    CoarseMesh out = mesh;
+    out.corners.clear();
+    out.offsets.assign(1, 0);
+    for (std::size_t i = 0; i < mesh.polygon_count(); ++i) {
+        const auto ring = mesh.polygon(i);
+        const std::size_t n = ring.size();
+        bool fan = false;
+        for (std::size_t k = 0; k + 1 < crowded.size() && !fan; k += 2) {
+            const auto a = std::find(ring.begin(), ring.end(), crowded[k]);
+            const auto b = std::find(ring.begin(), ring.end(), crowded[k + 1]);
+            if (a == ring.end() || b == ring.end()) continue;
+            const std::size_t gap = static_cast<std::size_t>(std::abs(a - b));
+            fan = gap != 1 && gap + 1 != n;
+        }
+        if (!fan) {
+            out.add_polygon(ring);
+            continue;
+        }
+        Point3 middle;
+        for (const Index v : ring) middle = middle + (1.0 / static_cast<double>(n)) * mesh.points[v];
+        const Index center = out.add_vertex(middle, mesh.places[ring[0]]);
+        for (std::size_t k = 0; k < n; ++k) out.add_polygon(std::array{ring[k], ring[(k + 1) % n], center});
+    }
+    return out;
+}
+
 Draft Remesher::draft(double error) {
     constexpr int most_rounds = 14;
     for (int round = 0;; ++round) {
@@ -211,7 +240,17 @@ Draft Remesher::draft(double error) {
         if (flaws.empty()) {
             std::vector<Index> nodes;
             d.polygons = make_polygons(d.graph, faces, d.counts, nodes);
-            for (const Index v : crowded_vertices(cut(d.polygons))) flaws.nodes.push_back(nodes[v]);
+            // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
+            for (int fans = 0; fans < 4; ++fans) {
+                const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
+                if (crowded.empty()) break;
+                if (fans < 3) {
+                    d.polygons = fan_out(d.polygons, crowded);
+                } else {
+                    for (const Index v : crowded)
+                        if (v < nodes.size()) flaws.nodes.push_back(nodes[v]);
+                }
+            }
         }
         watch_.stage("arrangement");
         if (flaws.empty() || control_.cancelled()) return d;

@@ -232,12 +232,20 @@ void FamilyTracer::fill_gaps() {
             const Index first = c;
             Index best = no_index;
             double best_sine = 0.3;
+            bool best_feature = true;
             do {
                 const double sine = std::abs(direction(c, 0.25).imag());
-                if (!mesh_.is_feature(c) && sine > best_sine) best_sine = sine, best = c;
+                const bool feature = mesh_.is_feature(c);
+                if (sine > 0.3 && (best_feature != feature ? best_feature : sine > best_sine))
+                    best_sine = sine, best = c, best_feature = feature;
                 c = mesh_.next_corner(c);
             } while (c != no_index && c != first);
             if (best == no_index) continue;
+            if (best_feature) {  // a narrow patch without edges across the line: begin on its rim
+                push_seed(mesh_.edges[best], along_halfedge(best, 0.5), 1e6 - 1.0, 0.97 * rule_.gap_above, best / 3);
+                any = true;
+                continue;
+            }
             const double priority = relative > 1e100 ? spacing_[w] : 1e6 - relative;
             push_seed(mesh_.edges[best], along_halfedge(best, 0.02), priority, 0.97 * rule_.gap_above);
             any = true;
@@ -250,7 +258,12 @@ void FamilyTracer::fill_gaps() {
 }
 
 bool FamilyTracer::seed_usable(const Seed& seed) const {
-    const Index h = mesh_.edge_halfedges[seed.edge];
+    Index h = mesh_.edge_halfedges[seed.edge];
+    if (mesh_.is_feature(h) && seed.only_into != no_index && h / 3 != seed.only_into) h = mesh_.opposites[h];
+    if (h != mesh_.edge_halfedges[seed.edge])
+        return std::abs(direction(h, 1.0 - seed.t).imag()) >= 0.15 &&
+               proximity_.distance_from(mesh_.point_on(seed.edge, seed.t), h / 3) >=
+                   seed.least * spacing_at(h, 1.0 - seed.t);
     if (!wanted_[mesh_.wedges[h]] && !wanted_[mesh_.wedges[next_of(h)]]) return false;
     const double spacing = spacing_at(h, seed.t);
     if (std::abs(direction(h, seed.t).imag()) < 0.15) return false;
@@ -489,7 +502,7 @@ bool FamilyTracer::trace(const Seed& seed) {
         l = &network_.lines()[line];
         if (k == 1) l->ends[0] = l->ends[1];
         l->ends[1] = end;
-        if (sides.size() == 1) l->ends[0] = seed.only_into != no_index ? LineEnd::umbilic : LineEnd::feature;
+        if (sides.size() == 1) l->ends[0] = feature ? LineEnd::feature : LineEnd::umbilic;
     }
     const Line& l = network_.lines()[line];
     double length = 0.0;
