@@ -115,6 +115,7 @@ Json json_of(const RemeshStatistics& s) {
                  {"spacing_error", s.spacing_error},
                  {"smoothing", s.smoothing},
                  {"rounds", s.rounds},
+                 {"distance_bound", s.distance_bound},
                  {"vertices", s.vertices},
                  {"faces", s.faces},
                  {"triangles", s.triangles},
@@ -137,6 +138,7 @@ void say_result(Session& session, const RemeshStatistics& s) {
     const double share = s.faces > 0 ? 100.0 * static_cast<double>(s.quads) / static_cast<double>(s.faces) : 0.0;
     session.say("result       " + counted(s.vertices, "vertex", "vertices") + ", " + counted(s.faces, "face") + ", " +
                 counted(s.quads, "quad") + " (" + std::to_string(static_cast<int>(share)) + " %)");
+    if (s.distance_bound > 0.0) session.say("distance     at most " + text_of(s.distance_bound) + ", proved");
     for (const std::string& note : s.notes) session.warn(note);
 }
 
@@ -168,9 +170,12 @@ ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     for (const auto& [stage, seconds] : result.statistics.stage_seconds)
         session.detail(stage + " " + frontend::text_of(seconds) + " s");
     if (interrupt_flag()) return ExitCode::interrupted;
+    if (result.outcome != Outcome::done)
+        throw Inability("remesh: what was asked for could not be had (" + std::string(name_of(result.outcome)) +
+                        "); nothing is written");
     if (arguments.output.given()) session.write(arguments.output, document_of(result), arguments.output_options);
     if (arguments.lines.given()) session.write(arguments.lines, line_document(result), arguments.output_options);
-    return result.outcome == Outcome::done ? ExitCode::done : ExitCode::unable;
+    return ExitCode::done;
 }
 
 }  // namespace

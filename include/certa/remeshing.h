@@ -58,9 +58,10 @@ struct RemeshStatistics {
     std::size_t wedges = 0, trisectors = 0;
     int umbilic_half_turns = 0;  ///< sum of all indices times two
     std::size_t lines_min = 0, lines_max = 0, closed_lines = 0;
-    double spacing_error = 0.0;  ///< epsilon of the spacing of lines, as resolved
-    double smoothing = 0.0;      ///< smoothing length, as resolved
-    std::size_t rounds = 0;      ///< networks that were traced to meet what was asked for
+    double spacing_error = 0.0;   ///< epsilon of the spacing of lines, as resolved
+    double smoothing = 0.0;       ///< smoothing length, as resolved
+    std::size_t rounds = 0;       ///< networks that were traced to meet what was asked for
+    double distance_bound = 0.0;  ///< where an error was asked for: proved, both ways, in the input's unit
     std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0;
     std::size_t t_nodes = 0;            ///< polygons' corners without a turn, before they became quads and triangles
     double quad_share_with_t = 0.0;     ///< share of polygons with four corners, T-nodes counted as corners

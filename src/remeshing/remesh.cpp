@@ -3,6 +3,7 @@
 // Plan: input and features, directions, smoothing; then rounds of spacing, lines, graph, polygons, until the number of
 // vertices or faces is what was asked for; then placement. Vertices go like 1 / epsilon, so a few steps of the secant
 // rule on logarithms find epsilon; the round that came nearest counts.
+#include <certa/distance.h>
 #include <certa/remeshing.h>
 
 #include <algorithm>
@@ -91,6 +92,10 @@ private:
     CoarseMesh fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const;
     double count_of(const Draft& draft) const;
     void search();
+    void meet_error();
+    double wanted_error() const {
+        return options_.error ? options_.error->resolve(mesh_.diagonal) : 2e-3 * mesh_.diagonal;
+    }
     void finish();
     void place(CoarseMesh& mesh);
     CoarseMesh cut(const CoarseMesh& polygons);
@@ -106,6 +111,7 @@ private:
     DirectionField field_;
     std::vector<double> caps_;        ///< per wedge: largest spacing, 0 where free
     std::vector<double> patch_caps_;  ///< per patch, of the last refinement
+    TraceRule trace_rule_;
     std::optional<Draft> best_;
 };
 
@@ -118,11 +124,10 @@ SpacingRule Remesher::rule_of(double error) const {
 }
 
 double Remesher::start_error() {
-    if (options_.error) return 2.0 * options_.error->resolve(mesh_.diagonal);
-    if (!options_.vertices && !options_.faces) return 4e-3 * mesh_.diagonal;
+    if (!options_.vertices && !options_.faces) return 1.4 * wanted_error();
     const double wanted = static_cast<double>(options_.vertices ? *options_.vertices : *options_.faces);
     double error = 4e-3 * mesh_.diagonal;
-    for (int round = 0; round < 6; ++round)
+    for (int round = 0; round < 4; ++round)
         error *= std::clamp(expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_)) / wanted,
                             0.05, 20.0);
     return error;
@@ -230,7 +235,7 @@ Draft Remesher::draft(double error) {
     for (int round = 0;; ++round) {
         const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
         watch_.stage("spacing");
-        Draft d{error, trace_lines(mesh_, field_, spacing, TraceRule{}, control_), {}, {}, {}, {}};
+        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}};
         watch_.stage("lines");
         ++result_.statistics.rounds;
         d.graph = build_graph(d.network, {0.5 * error});
@@ -276,24 +281,64 @@ double Remesher::count_of(const Draft& draft) const {
                                    : make_quad_dominant(draft.polygons).polygon_count());
 }
 
+/// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps is varied too.
 void Remesher::search() {
-    double error = start_error();
-    if (!options_.vertices && !options_.faces) {
-        best_.emplace(draft(error));
-        return;
-    }
     const double wanted = static_cast<double>(options_.vertices ? *options_.vertices : *options_.faces);
-    double best_miss = 1e300;
-    for (int round = 0; round < 8 && !control_.cancelled(); ++round) {
+    double error = start_error(), best_miss = 1e300, low = 0.0, high = 1e300;
+    constexpr std::array<double, 12> gaps{0.75, 0.75, 0.75, 0.75, 0.75, 0.7, 0.8, 0.7, 0.8, 0.66, 0.85, 0.75};
+    for (const double gap : gaps) {
+        if (control_.cancelled()) return;
+        trace_rule_.gap_above = gap;
         Draft d = draft(error);
         const double count = std::max(count_of(d), 1.0), miss = std::abs(std::log(count / wanted));
-        if (miss < best_miss) {
-            best_miss = miss;
+        const bool whole = d.flaws.empty();
+        if (!best_ || (whole && miss < best_miss)) {
+            best_miss = whole ? miss : 1e300;
             best_.emplace(std::move(d));
         }
-        if (miss < 0.02) break;
-        error *= std::clamp(count / wanted, 0.3, 3.0);
+        if (best_miss < 0.025) return;
+        if (gap == gaps[0])
+            (count > wanted ? low : high) = count > wanted ? std::max(low, error) : std::min(high, error);
+        double next = error * std::clamp(count / wanted, 0.3, 3.0);
+        if (low > 0.0 && high < 1e300 && (next <= low || next >= high)) next = std::sqrt(low * high);
+        error = next;
     }
+    if (best_miss > 0.05)
+        result_.statistics.notes.push_back("the nearest count that was found is " +
+                                           std::to_string(static_cast<std::size_t>(count_of(*best_))) + ", not " +
+                                           std::to_string(static_cast<std::size_t>(wanted)));
+}
+
+/// Lines closer together until the result's distance to the input, proved for every way to fill its polygons, is within
+/// the bound.
+void Remesher::meet_error() {
+    double error = start_error();
+    PolygonMesh input;
+    input.positions = input_.positions;
+    for (const Triangle& t : input_.triangles) {
+        input.corners.insert(input.corners.end(), t.begin(), t.end());
+        input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
+    }
+    const double wanted = wanted_error();
+    for (int round = 0; round < 8; ++round) {
+        best_.emplace(draft(error));
+        if (control_.cancelled()) return;
+        finish();
+        if (result_.outcome != Outcome::done) return;
+        DistanceOptions options;
+        options.samples = 10000;
+        options.tolerance = 0.05;
+        options.resolution = Length{0.02 * wanted, false};
+        const SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
+        watch_.stage("certificate");
+        if (control_.cancelled()) return;
+        result_.statistics.distance_bound = distance.hausdorff_bound;
+        if (distance.hausdorff_bound <= wanted) return;
+        error *= std::clamp(0.9 * wanted / distance.hausdorff_bound, 0.25, 0.85);
+    }
+    result_.outcome = Outcome::over_budget;
+    result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
+                                       std::to_string(result_.statistics.distance_bound));
 }
 
 void Remesher::describe_lines() {
@@ -351,6 +396,9 @@ void Remesher::describe_polygons() {
 }
 
 void Remesher::finish() {
+    result_.mesh = {};
+    result_.feature_edges.clear();
+    result_.feature_curves.clear();
     describe_polygons();
     if (!best_->flaws.empty()) {
         // Nothing half right: an answer would have the wrong topology.
@@ -360,7 +408,6 @@ void Remesher::finish() {
             "no network of lines was found whose faces are simple polygons everywhere, first near (" +
             std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
             "); a smaller error or more vertices may do it");
-        describe_lines();
         return;
     }
     CoarseMesh coarse = cut(best_->polygons);
@@ -385,20 +432,27 @@ void Remesher::finish() {
     RemeshStatistics& s = result_.statistics;
     s.vertices = coarse.points.size();
     s.faces = coarse.polygon_count();
+    s.quads = s.triangles = 0;
     for (std::size_t i = 0; i < s.faces; ++i) {
         s.quads += coarse.polygon(i).size() == 4 ? 1 : 0;
         s.triangles += coarse.polygon(i).size() == 3 ? 1 : 0;
     }
-    describe_lines();
 }
 
 RemeshResult Remesher::run() {
-    if (prepare()) search();
+    if (prepare()) {
+        if (options_.vertices || options_.faces) {
+            search();
+            if (best_ && !control_.cancelled()) finish();
+        } else {
+            meet_error();
+        }
+    }
     if (control_.cancelled() || !best_) {
         result_.outcome = Outcome::cancelled;
         return std::move(result_);
     }
-    finish();
+    describe_lines();
     control_.report("done", 1.0);
     return std::move(result_);
 }
