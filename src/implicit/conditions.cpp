@@ -46,6 +46,7 @@ public:
             find_regions();
             check_degrees();
         }
+        add_obstructing_leaves();
         for (std::size_t i = 0; i < bad_.size(); ++i) {
             if (bad_[i]) findings_.offenders.push_back(t_.active_leaves()[i]);
         }
@@ -58,6 +59,31 @@ private:
         bad_[active_leaf] = 1;
     }
     bool marked(std::uint32_t point) const { return growth_.marked[point] != 0; }
+
+    /// A critical leaf keeps its points out of W. Where it is larger than a leaf that needs one of them, smaller ones
+    /// would not help: it is split too, and its children may have slopes.
+    void add_obstructing_leaves() {
+        std::vector<Coordinate> needed(t_.point_count(), 0);  // size of the smallest leaf that needs the point
+        for (std::size_t i = 0; i < bad_.size(); ++i) {
+            if (!bad_[i]) continue;
+            const Coordinate size = tree_.size_of(tree_.cell(t_.active_leaves()[i]));
+            for (const auto& t : t_.tetrahedra_of(i)) {
+                for (const std::uint32_t p : t) {
+                    if (!t_.may_join(p) && (needed[p] == 0 || size < needed[p])) needed[p] = size;
+                }
+            }
+        }
+        for (std::size_t i = 0; i < bad_.size(); ++i) {
+            const Cell& cell = tree_.cell(t_.active_leaves()[i]);
+            if (bad_[i] || !cell.is_critical()) continue;
+            const Coordinate size = tree_.size_of(cell);
+            for (const auto& t : t_.tetrahedra_of(i)) {
+                for (const std::uint32_t p : t) {
+                    if (needed[p] != 0 && needed[p] < size) bad_[i] = 1;
+                }
+            }
+        }
+    }
 
     void check_mixed() {
         for (std::size_t k = 0; k < t_.tetrahedra().size(); ++k) {

@@ -47,7 +47,7 @@ public:
         result_.low = tree_.grid().place(GridPoint{0, 0, 0});
         result_.high = tree_.grid().place(GridPoint{tree_.grid().side(), tree_.grid().side(), tree_.grid().side()});
         if (const auto obstacle = classify(tree_, tape_, limits_, control_)) return stop(*obstacle);
-        const std::vector<Cluster> clusters = find_clusters(tree_);
+        std::vector<Cluster> clusters = find_clusters(tree_);
         result_.statistics.clusters = clusters.size();
         std::optional<Triangulation> triangulation;
         Growth growth;
@@ -71,8 +71,11 @@ public:
                 conclude(*triangulation, growth, findings);
                 return std::move(result_);
             }
+            const bool critical = std::any_of(findings.offenders.begin(), findings.offenders.end(),
+                                              [&](std::uint32_t leaf) { return tree_.cell(leaf).is_critical(); });
             if (const auto obstacle = split_all(tree_, findings.offenders, tape_, limits_, control_))
                 return stop(*obstacle);
+            if (critical) clusters = find_clusters(tree_);
             split = std::move(findings.offenders);
         }
     }

@@ -105,7 +105,7 @@ public:
             cells += parts_.back().statistics.cells;
             surfaces += parts_.back().components.empty() ? 0 : 1;
         }
-        if (surfaces > 1) {
+        if (surfaces > 1 && !options_.clip) {  // of a clipped surface, more than the type is never claimed
             ImplicitOptions whole = with_time(options_);
             whole.max_cells = std::min(budget_, 30'000 + 20 * cells);
             ImplicitResult attempt = certify_whole(function_, grid_, whole, control_);
