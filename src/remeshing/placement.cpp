@@ -151,20 +151,30 @@ private:
         hints_of_input_samples_.assign(count, no_index);
     }
 
-    /// Rows of a triangular lattice, at the centroids of its cells: k * k points.
-    static std::vector<std::array<double, 3>> lattice(std::uint32_t least) {
+    struct Sample {
+        std::array<double, 3> w{};
+        double weight = 1.0;
+    };
+    /// A triangular lattice at the centroids of its cells: k * k points; and, because distances are largest there, the
+    /// corners and the middles of the sides with little weight.
+    static std::vector<Sample> lattice(std::uint32_t least) {
         std::uint32_t k = 1;
         while (k * k < least) ++k;
-        std::vector<std::array<double, 3>> weights;
+        std::vector<Sample> samples;
+        const auto add = [&](double u, double v, double weight) { samples.push_back({{1.0 - u - v, u, v}, weight}); };
         for (std::uint32_t i = 0; i < k; ++i)
             for (std::uint32_t j = 0; i + j < k; ++j) {
                 const double u = (i + 1.0 / 3.0) / k, v = (j + 1.0 / 3.0) / k;
-                weights.push_back({1.0 - u - v, u, v});
-                if (i + j + 1 < k)
-                    weights.push_back({1.0 - u - v - 1.0 / 3.0 / k, u + 1.0 / 3.0 / k, v + 1.0 / 3.0 / k});
+                add(u, v, 1.0);
+                if (i + j + 1 < k) add(u + 1.0 / 3.0 / k, v + 1.0 / 3.0 / k, 1.0);
             }
-        for (auto& w : weights) w[0] = 1.0 - w[1] - w[2];
-        return weights;
+        constexpr double little = 0.1;
+        add(0.0, 0.0, little), add(1.0, 0.0, little), add(0.0, 1.0, little);
+        add(0.5, 0.0, little), add(0.5, 0.5, little), add(0.0, 0.5, little);
+        double sum = 0.0;
+        for (const Sample& sample : samples) sum += sample.weight;
+        for (Sample& sample : samples) sample.weight /= sum;
+        return samples;
     }
 
     void pair_coarse_samples() {
@@ -176,17 +186,18 @@ private:
         core::parallel_for(triangles_.size(), 32, control_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t t = begin; t < end; ++t) {
                 const auto& c = triangles_[t];
-                Index hint = no_index;
                 for (std::size_t s = 0; s < per_triangle; ++s) {
                     Pair& pair = pairs_[t * per_triangle + s];
+                    Index& hint = hints_[t * per_triangle + s];  // of the last round
+                    if (hint == no_index && s > 0) hint = hints_[t * per_triangle + s - 1];
                     pair.triangle = static_cast<Index>(t);
-                    pair.w = lattice_[s];
+                    pair.w = lattice_[s].w;
                     const Point3 x = pair.w[0] * mesh_.points[c[0]] + pair.w[1] * mesh_.points[c[1]] +
                                      pair.w[2] * mesh_.points[c[2]];
                     const NearestPoint nearest = tree_->find_nearest(x, hint);
                     hint = nearest.triangle;
                     fill(pair, x, nearest.point, std::sqrt(nearest.squared_distance), normals_[hint]);
-                    pair.weight *= 0.5 * coarse_areas_[t] / area / double(per_triangle);
+                    pair.weight *= 0.5 * coarse_areas_[t] / area * lattice_[s].weight;
                 }
             }
         });
@@ -223,7 +234,7 @@ private:
         triangles_ = triangulate(mesh_, *tree_);
         if (lattice_.empty()) {
             lattice_ = lattice(options_.samples_per_triangle);
-            sample_input(triangles_.size() * lattice_.size());
+            sample_input(triangles_.size() * 6);
         }
         coarse_areas_.clear(), coarse_normals_.clear();
         for (const auto& t : triangles_) {
@@ -458,7 +469,7 @@ private:
     std::vector<std::array<Index, 3>> triangles_;  // of the coarse mesh, in this round
     std::vector<double> coarse_areas_;
     std::vector<Point3> coarse_normals_;
-    std::vector<std::array<double, 3>> lattice_;
+    std::vector<Sample> lattice_;
     std::vector<std::pair<Point3, Index>> input_samples_;
     std::vector<Index> hints_, hints_of_input_samples_;
     std::vector<Pair> pairs_;
