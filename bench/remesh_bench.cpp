@@ -1,7 +1,7 @@
 // Our rows beside the table of the remeshers that we measure ourselves against: distance per vertex, share of quads,
 // time.
 //
-//   remesh_bench [--models FOLDER] [--write FOLDER] [--verbose] [NAME...]
+//   remesh_bench [--models FOLDER] [--write FOLDER] [--no-placement] [--verbose] [NAME...]
 // Models: surfaces/{ellipsoid,torus,saddle}.off, cad/{fandisk.off,rocker-arm.obj}, scan/bunny00.off in FOLDER, at the
 // vertex counts of the table; NAME picks some. RMS and Hausdorff distance are over the diagonal, two-sided, from 30,000
 // samples on each surface and all vertices; the bound is the proved one, for every triangulation. Seconds are CPU of
@@ -68,7 +68,7 @@ std::string summary_of(const SurfaceCheck& check) {
 
 struct Settings {
     std::string models = "../shared/models", write;
-    bool is_verbose = false;
+    bool is_verbose = false, is_placed = true;
     std::vector<std::string> names;
 };
 
@@ -78,7 +78,10 @@ void write_result(const Settings& settings, const Row& row, const PolygonMesh& m
     std::string name = std::strrchr(row.file, '/') + 1;
     name = name.substr(0, name.find('.')) + "_" + std::to_string(row.vertices) + ".off";
     MeshDocument document;
-    document.complex = make_complex(mesh);
+    document.complex.positions = mesh.positions;
+    for (std::size_t q = 0; q + 1 < mesh.offsets.size(); ++q)
+        add_facet(document.complex,
+                  {{mesh.corners.begin() + mesh.offsets[q], mesh.corners.begin() + mesh.offsets[q + 1]}});
     write_document(settings.write + "/" + name, document);
 }
 
@@ -86,6 +89,7 @@ void measure(const Settings& settings, const Row& row) {
     const TriangleMesh input = triangulate(read_document(settings.models + "/" + row.file)).mesh;
     RemeshOptions options;
     options.vertices = row.vertices;
+    options.placement = settings.is_placed;
     const double start = cpu_seconds();
     const RemeshResult result = remesh(input, options);
     const double seconds = cpu_seconds() - start;
@@ -123,6 +127,8 @@ int main(int count, char** arguments) {
             settings.models = arguments[++i];
         } else if (std::strcmp(arguments[i], "--write") == 0 && i + 1 < count) {
             settings.write = arguments[++i];
+        } else if (std::strcmp(arguments[i], "--no-placement") == 0) {
+            settings.is_placed = false;
         } else if (std::strcmp(arguments[i], "--verbose") == 0) {
             settings.is_verbose = true;
         } else {
