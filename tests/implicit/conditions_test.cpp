@@ -30,6 +30,7 @@ protected:
             const Findings found = check();
             if (found.offenders.empty()) break;
             ASSERT_FALSE(split_all(tree_, found.offenders, tape_, limits_, {}));
+            clusters_ = find_clusters(tree_);
         }
     }
 
