@@ -293,7 +293,8 @@ private:
         recovery.max_points = plan.protects ? protection_limit() : point_limit();
         if (plan.lazy) {
             const std::size_t factor = std::size_t{1} << std::min<std::size_t>(plan.restarts, 20);
-            recovery.owner_budget = factor * limits_.owner_budget;
+            // Empty diametral balls take a few times as many points as presence does (fans: seven times).
+            recovery.owner_budget = factor * limits_.owner_budget * (options_.gabriel ? 4 : 1);
             recovery.total_budget = factor * (limits_.total_budget + 50 * prepared_.complex.points.size());
         }
         if (plan.most_added > 0) recovery.total_budget = plan.most_added;
@@ -333,21 +334,23 @@ private:
         return true;
     }
 
-    /// Recovery of small complexes is cheap, and no split rule gives the fewest points everywhere.
+    /// Recovery of small complexes is cheap, and no split rule gives the fewest points everywhere: another one may also
+    /// stay within max_points where the first does not.
     void try_other_rules(const Plan& plan, std::unique_ptr<Attempt>& best) {
-        if (!plan.lazy || plan.protects || best->end.outcome != Outcome::done) return;
-        if (prepared_.complex.frames.size() > limits_.facets_for_trials || best->added() < limits_.added_for_trials)
-            return;
+        const auto is_done = [](const Attempt& attempt) { return attempt.end.outcome == Outcome::done; };
+        if (!plan.lazy || plan.protects || prepared_.complex.frames.size() > limits_.facets_for_trials) return;
+        const bool hit_limit = best->end.outcome == Outcome::over_budget && !best->end.stuck;
+        if (!hit_limit && (!is_done(*best) || best->added() < limits_.added_for_trials)) return;
         for (const SplitRule rule : {SplitRule::middle_first, SplitRule::shells}) {
             Plan other = plan;
             other.rule = rule;
-            other.most_added = best->added() - 1;
+            if (is_done(*best)) other.most_added = best->added() - 1;
             std::unique_ptr<Attempt> attempt = try_plan(other);
             if (attempt->end.outcome == Outcome::cancelled) {
                 best = std::move(attempt);
                 return;
             }
-            if (attempt->end.outcome == Outcome::done && attempt->added() < best->added()) best = std::move(attempt);
+            if (is_done(*attempt) && (!is_done(*best) || attempt->added() < best->added())) best = std::move(attempt);
         }
     }
 

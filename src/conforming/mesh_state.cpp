@@ -141,6 +141,17 @@ void MeshState::cut(std::uint32_t id, std::uint32_t vertex) {
     if (!is_there(pieces[other], whole.b)) queue_piece(other);
 }
 
+void MeshState::set_crossing(std::uint32_t segment, std::uint32_t vertex) {
+    const double there = parameter_of(segment, vertex);
+    for (std::uint32_t id = first_pieces[segment]; id != no_index; id = pieces[id].next) {
+        Piece& piece = pieces[id];
+        const bool is_before = piece.b == vertex || parameter_of(segment, piece.b) < there;
+        const std::uint32_t old = is_before ? piece.to : piece.from;
+        if (is_before && (old == no_index || parameter_of(segment, old) > there)) piece.to = vertex;
+        if (!is_before && (old == no_index || parameter_of(segment, old) < there)) piece.from = vertex;
+    }
+}
+
 void MeshState::find_encroached(const Point3& place, std::uint32_t near, std::vector<std::uint32_t>& found) {
     found.clear();
     if (!gabriel_pieces_) return;

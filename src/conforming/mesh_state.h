@@ -25,6 +25,8 @@ struct Piece {
     bool shield = false;
     bool queued = false;
     PieceRule rule = PieceRule::present;
+    std::uint32_t from = no_index,
+                  to = no_index;  ///< crossings (Placement) before and after it; none: the segment's ends
 };
 
 /// Where a Steiner point lies.
@@ -57,6 +59,8 @@ public:
     Inserted insert(const Point3& place, std::uint32_t near, const Owner& owner);
     /// Cuts a piece at the vertex on it that was inserted last; queues what depends on it.
     void cut(std::uint32_t piece, std::uint32_t vertex);
+    /// Makes a vertex on a segment the end from which pieces on both sides measure.
+    void set_crossing(std::uint32_t segment, std::uint32_t vertex);
     /// The pieces with the Gabriel rule whose diametral ball a point would enter, if it were inserted.
     void find_encroached(const Point3& place, std::uint32_t near, std::vector<std::uint32_t>& found);
     /// Marks a constraint triangle, so that its facet hears of its disappearance; false where it is absent.

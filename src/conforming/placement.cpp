@@ -8,9 +8,12 @@
 #include <cmath>
 
 #include "core/vector3.h"
+#include "delaunay/planar.h"
 
 namespace certa::conforming {
 namespace {
+
+using delaunay::PlanarPoint;
 
 constexpr std::uint8_t first_acute = 1, second_acute = 2, known = 4;
 constexpr double margin = 0.1;  // of a piece: nearer to its ends no copied distance is used
@@ -57,28 +60,73 @@ Point3 Placement::split_of(const Piece& piece, const Point3* reference) {
     const auto fits = [&](double t) { return t > low + margin * (high - low) && t < high - margin * (high - low); };
     const double middle = low + 0.5 * (high - low);
     if (reference == nullptr) return at(middle);
-    if (rule_ == SplitRule::middle_first && low == 0.0 && high == length) return at(middle);
+    const double begin = piece.from == no_index ? 0.0 : mesh_.parameter_of(piece.owner, piece.from);
+    const double end = piece.to == no_index ? length : mesh_.parameter_of(piece.owner, piece.to);
+    if (rule_ == SplitRule::middle_first && low == begin && high == end) return at(middle);
     const std::uint8_t ends = acute_ends(piece.owner);
-    const bool both = (ends & first_acute) != 0 && (ends & second_acute) != 0;
-    const double from_a = distance(*reference, a), from_b = distance(*reference, b);
-    const bool use_first = both ? from_a <= from_b : (ends & first_acute) != 0;
-    const bool use_second = !use_first && (ends & second_acute) != 0;
+    const bool acute_begin = piece.from != no_index || (ends & first_acute) != 0;
+    const bool acute_end = piece.to != no_index || (ends & second_acute) != 0;
+    const double from_begin = distance(*reference, at(begin)), from_end = distance(*reference, at(end));
+    const bool use_first = acute_begin && (!acute_end || from_begin <= from_end);
+    const bool use_second = acute_end && !use_first;
     double t = middle;
     if (use_first) {
-        t = from_a;
+        t = begin + from_begin;
     } else if (use_second) {
-        t = length - from_b;
+        t = end - from_end;
     } else {
         t = dot(*reference - a, direction) / length;
     }
     const bool copied = rule_ != SplitRule::shells || !(use_first || use_second);
     if (copied && fits(t)) return at(t);
     if (use_first) {
-        t = shell_near(middle);
+        t = begin + shell_near(middle - begin);
     } else if (use_second) {
-        t = length - shell_near(length - middle);
+        t = end - shell_near(end - middle);
     }
     return at(fits(t) ? t : middle);
+}
+
+std::optional<Point3> Placement::crossing_of(const Piece& piece, std::uint32_t f, std::uint32_t witness) {
+    const Complex& c = mesh_.complex;
+    std::vector<std::uint32_t> segments;
+    if (witness < c.points.size()) {
+        const auto row = c.point_segments[witness];
+        segments.assign(row.begin(), row.end());
+    } else if (mesh_.owners[witness - c.points.size()].on_segment) {
+        segments.push_back(mesh_.owners[witness - c.points.size()].index);
+    }
+    const Point3 &a = mesh_.triangulation.position(piece.a), &b = mesh_.triangulation.position(piece.b);
+    for (const Side& side : c.facet_sides[f]) {
+        if (side.segment == piece.owner) continue;
+        const Point3& origin = c.points[c.segments[side.segment][0]];
+        Point3 axis = c.points[c.segments[side.segment][1]] - origin;
+        axis = (1.0 / norm(axis)) * axis;
+        const auto flat = [&](const Point3& p) {
+            const Point3 d = p - origin;
+            const double z = dot(d, axis);
+            return PlanarPoint{z, norm(d - z * axis)};
+        };
+        for (const std::uint32_t s : segments) {
+            if (s == side.segment || s == piece.owner) continue;
+            const auto of_s = c.segment_facets[s];
+            const auto of_side = c.segment_facets[side.segment];
+            const bool is_page = std::any_of(of_s.begin(), of_s.end(), [&](std::uint32_t k) {
+                return k != f && std::find(of_side.begin(), of_side.end(), k) != of_side.end();
+            });
+            if (!is_page) continue;
+            const PlanarPoint p = flat(a), q = flat(b), u = flat(c.points[c.segments[s][0]]),
+                              v = flat(c.points[c.segments[s][1]]);
+            const double side_p = (v.x - u.x) * (p.y - u.y) - (v.y - u.y) * (p.x - u.x);
+            const double side_q = (v.x - u.x) * (q.y - u.y) - (v.y - u.y) * (q.x - u.x);
+            const double side_u = (q.x - p.x) * (u.y - p.y) - (q.y - p.y) * (u.x - p.x);
+            const double side_v = (q.x - p.x) * (v.y - p.y) - (q.y - p.y) * (v.x - p.x);
+            if ((side_p > 0.0) == (side_q > 0.0) || (side_u > 0.0) == (side_v > 0.0)) continue;
+            const double t = side_p / (side_p - side_q);
+            if (t > 0.02 && t < 0.98) return a + t * (b - a);
+        }
+    }
+    return std::nullopt;
 }
 
 std::optional<Point3> Placement::rotate(std::uint32_t f, const Point3& on_line, const Point3& direction,

@@ -23,6 +23,10 @@ public:
     /// projection where no end is acute; on a power-of-two shell or in the middle when that is too near to an end.
     Point3 split_of(const Piece& piece, const Point3* reference);
 
+    /// Where a piece of a side of f crosses the image of a segment that `witness` lies on, rotated into f about a
+    /// common side; nothing where none does, or too near to an end of the piece.
+    std::optional<Point3> crossing_of(const Piece& piece, std::uint32_t f, std::uint32_t witness);
+
     /// A point of facet f that looks like vertex q from the line or point where f meets an element that q lies on, and
     /// lies within `radius` of `center` (both in the plane of f); or the foot of q where it is close to the plane.
     /// Nothing when neither is there.

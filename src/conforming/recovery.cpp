@@ -132,8 +132,9 @@ bool Recovery::insert_point(const Point3& place, std::uint32_t near, const Owner
     return inserted.outcome == MeshState::Insertion::done;
 }
 
-bool Recovery::split(std::uint32_t id, const Point3* reference, std::uint32_t near) {
+bool Recovery::split(std::uint32_t id, const Point3* reference, std::uint32_t near, std::uint32_t facet) {
     const Piece piece = mesh_.pieces[id];
+    bool is_crossing = false;
     Point3 place;
     Owner owner{!piece.shield, piece.owner};
     if (piece.shield) {
@@ -142,7 +143,10 @@ bool Recovery::split(std::uint32_t id, const Point3* reference, std::uint32_t ne
             split_on_sphere(ball.center, ball.radius, mesh_.triangulation.position(piece.a),
                             mesh_.triangulation.position(piece.b), choose_split(*area_, piece.a, piece.b, piece.ball));
     } else {
-        place = placement_.split_of(piece, reference);
+        std::optional<Point3> crossing;
+        if (facet != no_index && near != no_index) crossing = placement_.crossing_of(piece, facet, near);
+        is_crossing = crossing.has_value();
+        place = is_crossing ? *crossing : placement_.split_of(piece, reference);
     }
     std::uint32_t vertex = no_index;
     if (!insert_point(place, near == no_index ? piece.a : near, owner, vertex)) {
@@ -151,6 +155,7 @@ bool Recovery::split(std::uint32_t id, const Point3* reference, std::uint32_t ne
         return false;
     }
     mesh_.cut(id, vertex);
+    if (is_crossing) mesh_.set_crossing(piece.owner, vertex);
     return true;
 }
 
@@ -167,7 +172,8 @@ void Recovery::split_missing(std::uint32_t id) {
         split(id, nullptr, piece.a);
     } else {
         const Point3 reference = mesh_.triangulation.position(nearest);
-        split(id, &reference, nearest);
+        const auto facets = mesh_.complex.segment_facets[piece.owner];
+        split(id, &reference, nearest, facets.size() == 1 ? facets.front() : no_index);
     }
 }
 
@@ -306,6 +312,7 @@ void Recovery::refine_triangle(const FacetPatch::Missing& missing) {
     const std::uint32_t near = patch_.vertices[triangle[0]];
     PlanarPoint place = missing.center;
     bool mirrored = false;
+    std::uint32_t witness = no_index;
     if (!std::isfinite(missing.radius)) {
         // Three points on a line up to rounding: the middle of the longest side stands for the centre.
         double longest = -1.0;
@@ -320,6 +327,7 @@ void Recovery::refine_triangle(const FacetPatch::Missing& missing) {
     } else if (options_.mirroring) {
         const Point3 center = patch_.lift(missing.center);
         const std::uint32_t nearest = mesh_.triangulation.find_nearest(center, near);
+        witness = nearest;
         if (distance(mesh_.triangulation.position(nearest), center) < missing.radius) {
             if (const auto image = placement_.mirror(patch_.facet, center, missing.radius, nearest)) {
                 const PlanarPoint p = patch_.flatten(*image);
@@ -340,7 +348,8 @@ void Recovery::refine_triangle(const FacetPatch::Missing& missing) {
         const Blocking blocking = find_blocking_piece(triangle, aim);
         if (blocking.found) {
             // A piece that was cut since is in the way no longer: the next look at the facet will tell.
-            if (is_unchanged(blocking.edge)) split(patch_.pieces[blocking.edge], &lifted);
+            if (is_unchanged(blocking.edge))
+                split(patch_.pieces[blocking.edge], &lifted, mirrored ? witness : no_index, patch_.facet);
             return;
         }
         if (insert_in_facet(lifted, near)) return;

@@ -69,7 +69,8 @@ private:
     void settle_pieces();
     void split_missing(std::uint32_t piece);
     /// `near`: a vertex to start the search for the new point's place from, if a better one than an end is known.
-    bool split(std::uint32_t piece, const Point3* reference, std::uint32_t near = no_index);
+    bool split(std::uint32_t piece, const Point3* reference, std::uint32_t near = no_index,
+               std::uint32_t facet = no_index);
     void refine();
     void refine_triangle(const FacetPatch::Missing& missing);
     bool split_shield_of(const std::array<std::uint32_t, 3>& triangle);
