@@ -5,6 +5,7 @@
 #include <certa/mesh.h>
 #include <certa/run_control.h>
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -87,6 +88,11 @@ struct SurfaceCheck {
 /// Cost:       O(n log n); deterministic.
 SurfaceCheck check_surface(const PolygonMesh& mesh, const PolygonMesh& input, const SurfaceCheckOptions& options = {},
                            const RunControl& control = {});
+
+/// Pairs of polygons (lower number first, sorted) that meet beyond the corners and sides that they share; exact.
+/// Polygons of more than three corners count under each triangulation that certa/distance.h lists. Errors: as
+/// measure_distance.
+std::vector<std::array<std::uint32_t, 2>> find_contacts(const PolygonMesh& mesh, const RunControl& control = {});
 
 /// Counts of components, boundary and what is not manifold.
 SurfaceShape compute_surface_shape(const PolygonMesh& mesh);

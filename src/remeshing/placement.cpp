@@ -5,8 +5,11 @@
 // out shows only there). Each pair says: along the input's normal there, the coarse point, a weighted mean of three
 // vertices, should move by so much. The sum of squares is lowered by conjugate gradients over the vertices, with a weak
 // spring against sliding along the surface. A step is kept if the measured distances agree; else half of it is tried.
+// At the end what turned away or met something is taken back.
 // Lengths are scaled so that the input's box has diagonal 1.
 #include "remeshing/placement.h"
+
+#include <certa/surface_check.h>
 
 #include <algorithm>
 #include <cmath>
@@ -55,6 +58,7 @@ public:
         : input_(input), mesh_(mesh), options_(options), control_(control) {
         scale_input();
         for (Point3& p : mesh_.points) p = scale_ * (p - origin_);
+        initial_ = mesh_.points;
         tree_ = std::make_unique<TriangleTree>(input_.positions, input_.triangles);
         for (const Triangle& t : input_.triangles) {
             const Point3 &a = position(t[0]), &b = position(t[1]), &c = position(t[2]);
@@ -63,9 +67,6 @@ public:
             normals_.push_back(unit(area));
         }
         build_curves(features);
-        incident_.resize(mesh_.points.size());
-        for (std::size_t q = 0; q < mesh_.polygon_count(); ++q)
-            for (const Index v : mesh_.polygon(q)) incident_[v].push_back(static_cast<Index>(q));
     }
 
     PlacementReport run() {
@@ -85,6 +86,7 @@ public:
                 round = options_.rounds - 1;
             }
         }
+        take_back_damage();
         report.rms_after = rms_ / scale_, report.largest_after = largest_ / scale_;
         report.rms_before /= scale_, report.largest_before /= scale_;
         if (control_.cancelled()) report.outcome = Outcome::cancelled;
@@ -446,6 +448,78 @@ private:
         }
     }
 
+    /// Triangles that turn away from the input, and those that meet others beyond what they share.
+    std::vector<Index> find_damage() const {
+        std::vector<Index> bad;
+        PolygonMesh cut;
+        cut.positions = mesh_.points;
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            const auto& c = triangles_[t];
+            for (const Index v : c) cut.corners.push_back(VertexId{v});
+            cut.offsets.push_back(static_cast<std::uint32_t>(cut.corners.size()));
+            const Point3 middle = (1.0 / 3.0) * (mesh_.points[c[0]] + mesh_.points[c[1]] + mesh_.points[c[2]]);
+            if (dot(normals_[tree_->find_nearest(middle).triangle], coarse_normals_[t]) <= 0.0)
+                bad.push_back(static_cast<Index>(t));
+        }
+        for (const auto& [s, t] : find_contacts(cut, control_)) bad.insert(bad.end(), {s, t});
+        return bad;
+    }
+
+    /// What steps and new diagonals together have spoilt goes half of the way back to where it was before placement,
+    /// then all of it; where it was spoilt before, vertices go between their neighbours. The least damage counts.
+    void take_back_damage() {
+        constexpr int rounds = 12;
+        std::vector<Index> damage = find_damage();
+        std::vector<Point3> best = mesh_.points;
+        std::size_t least = damage.size();
+        for (int round = 0; round < rounds && !damage.empty() && !control_.cancelled(); ++round) {
+            std::vector<std::uint8_t> is_bad = mark_vertices(damage);
+            for (int ring = 2; ring < round; ring += 3) widen(is_bad);
+            if (round < 4) {
+                for (std::size_t v = 0; v < is_bad.size(); ++v)
+                    if (is_bad[v] != 0)
+                        mesh_.points[v] = round < 2 ? 0.5 * (mesh_.points[v] + initial_[v]) : initial_[v];
+            } else {
+                put_between_neighbours(is_bad);
+            }
+            return_to_curves();
+            measure(2.0);
+            damage = find_damage();
+            if (damage.size() >= least) continue;
+            least = damage.size();
+            best = mesh_.points;
+        }
+        if (mesh_.points == best) return;
+        mesh_.points = best;
+        measure(2.0);
+    }
+    std::vector<std::uint8_t> mark_vertices(const std::vector<Index>& triangles) const {
+        std::vector<std::uint8_t> is_marked(mesh_.points.size(), 0);
+        for (const Index t : triangles)
+            for (const Index v : triangles_[t]) is_marked[v] = 1;
+        return is_marked;
+    }
+    void widen(std::vector<std::uint8_t>& is_marked) const {
+        const std::vector<std::uint8_t> before = is_marked;
+        for (const auto& t : triangles_)
+            if (before[t[0]] + before[t[1]] + before[t[2]] > 0)
+                for (const Index v : t) is_marked[v] = 1;
+    }
+    void put_between_neighbours(const std::vector<std::uint8_t>& is_marked) {
+        std::vector<Point3> sums(mesh_.points.size());
+        std::vector<double> counts(mesh_.points.size(), 0.0);
+        for (const auto& t : triangles_)
+            for (std::size_t i = 0; i < 3; ++i) {
+                sums[t[i]] = sums[t[i]] + mesh_.points[t[(i + 1) % 3]] + mesh_.points[t[(i + 2) % 3]];
+                counts[t[i]] += 2.0;
+            }
+        for (Index v = 0; v < is_marked.size(); ++v) {
+            if (is_marked[v] == 0 || mesh_.kinds[v] != VertexKind::smooth) continue;
+            const Point3 middle = 0.5 * (mesh_.points[v] + (1.0 / counts[v]) * sums[v]);
+            mesh_.points[v] = tree_->find_nearest(middle).point;
+        }
+    }
+
     void finish() {
         for (Index v = 0; v < mesh_.points.size(); ++v) {
             const NearestPoint nearest = tree_->find_nearest(mesh_.points[v]);
@@ -464,7 +538,7 @@ private:
     std::vector<double> areas_;
     std::vector<Point3> normals_;
     std::vector<Curve> curves_;
-    std::vector<std::vector<Index>> incident_;
+    std::vector<Point3> initial_;
 
     std::vector<std::array<Index, 3>> triangles_;  // of the coarse mesh, in this round
     std::vector<double> coarse_areas_;

@@ -27,12 +27,13 @@ struct PlacementReport {
 
 /// Alternates closest points (samples of either surface on the other) and a linear least-squares step on their
 /// distances along the input's normals. Corners stay where they are; crease and boundary vertices move along their
-/// curve of `features` (edges of the input), on it; a step that would turn a triangle away from the input is halved.
+/// curve of `features` (edges of the input), on it; a step that would turn a triangle away from the input is halved,
+/// and polygons that end up turned away or meeting others go back towards where they were.
 ///
 /// Input:      an oriented triangle mesh with unit-size coordinates or any other (scaled inside), its feature edges,
 ///             a coarse mesh with vertices on or near it. mesh.places need not be set; they are set at the end.
-/// Guarantee:  connectivity, kinds and curves are untouched; the objective does not grow. Deterministic.
-/// Cost:       linear in vertices times samples, with the logarithm of the input's size.
+/// Guarantee:  connectivity, kinds and curves are untouched; the objective does not grow but where something is taken
+/// back. Deterministic. Cost:       linear in vertices times samples, with the logarithm of the input's size.
 PlacementReport place_vertices(const TriangleMesh& input, std::span<const FeatureEdge> features, CoarseMesh& mesh,
                                const PlacementOptions& options = {}, const RunControl& control = {});
 

@@ -31,7 +31,7 @@ struct Contact {
 };
 
 /// Pairs of polygons that meet beyond shared corners, each once.
-std::vector<Contact> find_contacts(const PolygonSurface& surface, const RunControl& control) {
+std::vector<Contact> list_contacts(const PolygonSurface& surface, const RunControl& control) {
     struct Entry {
         PolygonSurface::Corners corners;
         std::uint32_t polygon = 0;
@@ -219,11 +219,11 @@ private:
     }
 
     void check_contacts() {
-        const std::vector<Contact> contacts = find_contacts(*surface_, control_);
+        const std::vector<Contact> contacts = list_contacts(*surface_, control_);
         check_.possible_contacts = contacts.size();
         for (const Contact& contact : contacts) check_.contacts += contact.is_chosen;
         if (check_.contacts > 0)
-            for (const Contact& contact : find_contacts(*base_, control_)) check_.input_contacts += contact.is_chosen;
+            for (const Contact& contact : list_contacts(*base_, control_)) check_.input_contacts += contact.is_chosen;
         if (check_.input_contacts > 0) return;
         check_.promises.push_back("embedded");
         for (const Contact& contact : contacts)
@@ -351,6 +351,19 @@ SurfaceCheck check_surface(const PolygonMesh& mesh, const PolygonMesh& input, co
                            const RunControl& control) {
     check_options(options, input);
     return Checker(mesh, input, options, control).run();
+}
+
+std::vector<std::array<std::uint32_t, 2>> find_contacts(const PolygonMesh& mesh, const RunControl& control) {
+    std::vector<Defect> defects;
+    verify::find_polygon_defects(mesh, "the surface", defects);
+    if (!defects.empty()) throw InputError(std::move(defects));
+    const PolygonSurface surface(mesh, verify::find_exponent(mesh, mesh));
+    std::vector<std::array<std::uint32_t, 2>> pairs;
+    for (const Contact& contact : list_contacts(surface, control))
+        pairs.push_back({std::min(contact.first, contact.second), std::max(contact.first, contact.second)});
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    return pairs;
 }
 
 }  // namespace certa
