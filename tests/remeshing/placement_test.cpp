@@ -1,7 +1,7 @@
 // Placement lowers the distance by what theory promises, keeps what is fixed where it is, and folds nothing.
 #include "remeshing/placement.h"
 
-#include <certa/distance.h>
+#include <certa/surface_check.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -145,6 +145,17 @@ TEST(Placement, FoldsNothingWhereTheMeshIsFarTooCoarse) {
         EXPECT_LT(error(mesh, input), before);
         EXPECT_GT(least_agreement(mesh, input), 0.3);
     }
+}
+
+TEST(Placement, UnfoldsWhatWasFolded) {
+    const TriangleMesh input = triangle_mesh(make_torus(100, 60, 1.0, 0.4));
+    CoarseMesh mesh = coarse_mesh(make_torus(24, 14, 1.0, 0.4));
+    // A vertex pulled along the surface over its neighbour.
+    mesh.points[5 * 14 + 3] = 0.5 * (mesh.points[5 * 14 + 4] + mesh.points[5 * 14 + 5]);
+    ASSERT_FALSE(find_contacts(polygon_mesh(mesh)).empty());
+    place_vertices(input, {}, mesh);
+    EXPECT_TRUE(find_contacts(polygon_mesh(mesh)).empty());
+    EXPECT_GT(least_agreement(mesh, input), 0.0);
 }
 
 TEST(Placement, LeavesAPerfectMeshAlone) {
