@@ -97,8 +97,10 @@ private:
         return options_.error ? options_.error->resolve(mesh_.diagonal) : 2e-3 * mesh_.diagonal;
     }
     void finish();
+    void emit(const CoarseMesh& coarse);
     void place(CoarseMesh& mesh);
     CoarseMesh cut(const CoarseMesh& polygons);
+    CoarseMesh cut_warped(const CoarseMesh& mesh, double limit) const;
     void describe_lines();
     void describe_polygons();
 
@@ -112,6 +114,7 @@ private:
     std::vector<double> caps_;        ///< per wedge: largest spacing, 0 where free
     std::vector<double> patch_caps_;  ///< per patch, of the last refinement
     TraceRule trace_rule_;
+    CoarseMesh placed_;  ///< what `finish` has made
     std::optional<Draft> best_;
 };
 
@@ -329,12 +332,30 @@ void Remesher::meet_error() {
         options.samples = 10000;
         options.tolerance = 0.05;
         options.resolution = Length{0.02 * wanted, false};
-        const SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
+        // Samples first: they tell cheaply that it is not good enough.
+        options.bound = false;
+        SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
+        double reached = distance.hausdorff;
+        if (reached <= wanted) {
+            // Warped quads are what a bound for all ways to fill them fails on: cut more and more of them.
+            options.bound = true;
+            const bool may_cut = options_.output == RemeshOutput::quad_dominant && options_.subdivide == 0;
+            for (const double limit : {0.75, 0.3, 0.1, 0.0}) {
+                if (control_.cancelled()) return;
+                if (may_cut) emit(cut_warped(placed_, limit * wanted));
+                distance = measure_distance(result_.mesh, input, options, control_);
+                reached = distance.hausdorff_bound;
+                result_.statistics.distance_bound = reached;
+                if (reached <= wanted && !control_.cancelled()) {
+                    watch_.stage("certificate");
+                    return;
+                }
+                if (!may_cut) break;
+            }
+        }
         watch_.stage("certificate");
         if (control_.cancelled()) return;
-        result_.statistics.distance_bound = distance.hausdorff_bound;
-        if (distance.hausdorff_bound <= wanted) return;
-        error *= std::clamp(0.9 * wanted / distance.hausdorff_bound, 0.25, 0.85);
+        error *= std::clamp(0.85 * wanted / reached, 0.25, 0.7);
     }
     result_.outcome = Outcome::over_budget;
     result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
@@ -386,6 +407,34 @@ CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
     return polygons;
 }
 
+/// Quads whose diagonals are farther apart than `limit`, or that are not convex, become triangles on the diagonal
+/// nearer to the input: what an error is proved for must not depend on how a reader fills a quad.
+CoarseMesh Remesher::cut_warped(const CoarseMesh& mesh, double limit) const {
+    const CoarseMesh triangles = make_triangles(mesh, core::TriangleTree(input_.positions, input_.triangles));
+    CoarseMesh out = mesh;
+    out.corners.clear();
+    out.offsets.assign(1, 0);
+    for (std::size_t i = 0, t = 0; i < mesh.polygon_count(); ++i) {
+        const auto ring = mesh.polygon(i);
+        const std::size_t end = t + ring.size() - 2;
+        bool warped = false;
+        if (ring.size() == 4) {
+            const Point3 &a = mesh.points[ring[0]], &b = mesh.points[ring[1]], &c = mesh.points[ring[2]],
+                         &d = mesh.points[ring[3]];
+            const Point3 n = cross(c - a, d - b);
+            warped = !(norm(n) > 0.0) || std::abs(dot(b - a, n)) > limit * norm(n) ||
+                     dot(cross(b - a, d - a), n) <= 0.0 || dot(cross(c - b, a - b), n) <= 0.0 ||
+                     dot(cross(d - c, b - c), n) <= 0.0 || dot(cross(a - d, c - d), n) <= 0.0;
+        }
+        if (warped)
+            for (std::size_t k = t; k < end; ++k) out.add_polygon(triangles.polygon(k));
+        else
+            out.add_polygon(ring);
+        t = end;
+    }
+    return crowded_vertices(out).empty() ? out : mesh;
+}
+
 void Remesher::describe_polygons() {
     RemeshStatistics& s = result_.statistics;
     s.spacing_error = best_->error;
@@ -422,6 +471,14 @@ void Remesher::finish() {
         place(coarse);
     }
     for (std::uint64_t round = 0; round < options_.subdivide; ++round) coarse = subdivide(coarse);
+    emit(coarse);
+    placed_ = std::move(coarse);
+}
+
+void Remesher::emit(const CoarseMesh& coarse) {
+    result_.mesh = {};
+    result_.feature_edges.clear();
+    result_.feature_curves.clear();
     result_.mesh.positions = coarse.points;
     for (const Index c : coarse.corners) result_.mesh.corners.push_back(VertexId{c});
     result_.mesh.offsets = coarse.offsets;

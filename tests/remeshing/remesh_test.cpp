@@ -1,4 +1,5 @@
 // From triangles to polygons: topology, directions, features, counts, refusals, on surfaces whose answers are known.
+#include <certa/distance.h>
 #include <certa/remeshing.h>
 #include <gtest/gtest.h>
 
@@ -128,6 +129,7 @@ TEST(Umbilics, LieWhereTheoryPutsThem) {
 TEST(Lines, FollowTheTorus) {
     RemeshOptions options;
     options.vertices = 600;
+    options.placement = false;
     options.lines = true;
     const RemeshResult result = remesh(generators::make_torus(2.0, 0.7, 10000, 1), options);
     double sum = 0.0, length = 0.0;
@@ -213,7 +215,8 @@ TEST(Arrangement, FacesThatAreNoDisksAreFound) {
 
 TEST(Remesh, KeepsGenusAndClosedness) {
     RemeshOptions options;
-    options.error = Length{5e-3, true};
+    options.error = Length{3e-2, true};
+    options.placement = false;
     const auto check = [&](const char* name, const TriangleMesh& mesh, std::int64_t euler) {
         SCOPED_TRACE(name);
         expect_closed(remesh(mesh, options), euler);
@@ -225,9 +228,30 @@ TEST(Remesh, KeepsGenusAndClosedness) {
     check("noise", generators::make_noisy(generators::make_ellipsoid(2.0, 1.2, 0.8, 5000, 1), 0.02, 4), 2);
 }
 
+/// The bound is the library's own claim; here it is measured anew, on other samples.
+TEST(Remesh, MeetsTheError) {
+    const TriangleMesh input = generators::make_torus(2.0, 0.7, 5000, 1);
+    PolygonMesh polygons{input.positions, {}, {0}};
+    for (const Triangle& t : input.triangles) {
+        polygons.corners.insert(polygons.corners.end(), t.begin(), t.end());
+        polygons.offsets.push_back(static_cast<std::uint32_t>(polygons.corners.size()));
+    }
+    RemeshOptions options;
+    options.error = Length{0.03, false};
+    const RemeshResult result = remesh(input, options);
+    expect_closed(result, 0);
+    EXPECT_GT(result.statistics.distance_bound, 0.0);
+    EXPECT_LE(result.statistics.distance_bound, 0.03);
+    DistanceOptions distance;
+    distance.seed = 99;
+    distance.bound = false;
+    EXPECT_LE(measure_distance(result.mesh, polygons, distance).hausdorff, result.statistics.distance_bound);
+}
+
 TEST(Remesh, MeetsTheCountAndIsMostlyQuads) {
     for (const std::uint64_t wanted : {300U, 900U}) {
         RemeshOptions options;
+        options.placement = false;
         options.vertices = wanted;
         const RemeshResult result = remesh(generators::make_ellipsoid(2.0, 1.2, 0.8, 10000, 1), options);
         expect_closed(result, 2);
@@ -297,7 +321,10 @@ TEST(Remesh, DoesNotDependOnThreads) {
 TEST(Remesh, TurnsTrianglesAlikeAndSaysSo) {
     TriangleMesh input = generators::make_torus(2.0, 0.7, 2000, 1);
     for (std::size_t t = 0; t < 40; ++t) std::swap(input.triangles[t][0], input.triangles[t][1]);
-    const RemeshResult result = remesh(input, {});
+    RemeshOptions options;
+    options.vertices = 150;
+    options.placement = false;
+    const RemeshResult result = remesh(input, options);
     expect_closed(result, 0);
     EXPECT_EQ(result.statistics.flipped_triangles, 40U);
 }
