@@ -12,7 +12,7 @@ namespace {
 
 using Kind = ImplicitFunction::Kind;
 constexpr mpfr_prec_t precision = 100;
-constexpr int deepest = 5;
+constexpr int deepest = 10;
 
 int sign_of(mpfi_srcptr a) {
     return mpfi_nan_p(a) ? 0 : mpfi_is_strictly_pos(a) ? 1 : mpfi_is_strictly_neg(a) ? -1 : 0;
