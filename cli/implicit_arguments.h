@@ -27,6 +27,10 @@ Json to_json(const ImplicitCheck& check);
 ExitCode check_implicit_mesh(Session& session, const MeshDocument& document, const FunctionArgument& function,
                              const std::string& certificate);
 
+/// Decides what a surface mesh made by any program is to the zero set of a function in a box (empty: around the mesh).
+ExitCode check_mesh_against_function(Session& session, const MeshDocument& document, const FunctionArgument& function,
+                                     const std::vector<double>& box);
+
 /// Triangles of a document. Errors: UsageError where it has other polygons.
 TriangleMesh triangles_of(const MeshDocument& document);
 

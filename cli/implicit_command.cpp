@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <filesystem>
@@ -29,7 +30,7 @@ struct ImplicitArguments {
     std::vector<double> box{-2, -2, -2, 2, 2, 2};
     ImplicitOptions options;
     frontend::OutputOptions output_options;
-    std::string certificate, level;
+    std::string certificate, level, error, hausdorff, engine = "growth";
     bool no_verify = false;
 };
 
@@ -184,7 +185,10 @@ void verify(Session& session, const ImplicitResult& result, const std::string& f
     session.report()["check"] = to_json(check);
     if (!check.ok())
         throw InternalError("the result failed its own check and was not written: " + check.violations.front());
-    session.report()["proved"] = promises_of(check);
+    std::vector<std::string> promises = promises_of(check);
+    if (check.hausdorff) promises.push_back("hausdorff");
+    session.report()["proved"] = promises;
+    if (check.hausdorff) session.say("within " + frontend::text_of(*check.hausdorff) + " of the zero set, both ways");
     session.say("verified by the independent checker: " + counted(check.leaves_checked, "leaf", "leaves") + ", " +
                 counted(check.marks_checked, "mark") + ", " + counted(check.triangles_checked, "triangle"));
 }
@@ -209,6 +213,15 @@ void require_surface_format(const Session& session, const FileArgument& output) 
                          " is no format for surfaces here; write .off, .obj, .ply, .stl or .vtu");
 }
 
+/// A length above 0; nothing for an empty text.
+std::optional<double> length_of(const char* flag, const std::string& text, double diagonal) {
+    if (text.empty()) return std::nullopt;
+    const Length length = frontend::parse_length(flag, text);
+    const double value = length.resolve(diagonal);
+    if (!(value > 0)) throw UsageError(std::string(flag) + ": " + text + " is out of range; allowed is above 0");
+    return value;
+}
+
 ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
     if (arguments.output.given()) require_surface_format(session, arguments.output);
     if (!arguments.certificate.empty()) session.require_writable({arguments.certificate, Format::off});
@@ -229,8 +242,18 @@ ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
     options["verify"] = !arguments.no_verify;
     const auto& b = arguments.box;
     ImplicitOptions settings = arguments.options;
+    const double diagonal = std::hypot(b[3] - b[0], b[4] - b[1], b[5] - b[2]);
+    settings.error = length_of("--error", arguments.error, diagonal);
+    settings.hausdorff = length_of("--hausdorff", arguments.hausdorff, diagonal);
+    options["error"] = settings.error ? Json(*settings.error) : Json(nullptr);
+    options["hausdorff"] = settings.hausdorff ? Json(*settings.hausdorff) : Json(nullptr);
+    options["engine"] = arguments.engine;
+    const bool certifies = arguments.engine == "growth";
+    if (!certifies) settings.engine = ImplicitEngine::plantinga_vegter;
+    if (!certifies && !arguments.certificate.empty())
+        throw UsageError("the engine " + arguments.engine + " writes no certificate");
     settings.memory_bytes = available_memory();
-    settings.certificate = !arguments.no_verify || !arguments.certificate.empty();
+    settings.certificate = certifies && (!arguments.no_verify || !arguments.certificate.empty());
     const ImplicitResult result = session.timed("implicit", [&] {
         const GracefulScope graceful;
         return mesh_implicit(function, {b[0], b[1], b[2]}, {b[3], b[4], b[5]}, settings, session.control());
@@ -238,7 +261,14 @@ ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
     report_result(session, result, settings.clip);
     if (result.verdict == ImplicitVerdict::undecided) return end_undecided(session, arguments, result);
     say_result(session, result);
-    if (!arguments.no_verify) verify(session, result, source.text);
+    if (result.verdict == ImplicitVerdict::certified && settings.hausdorff && !result.hausdorff) {
+        session.say("UNDECIDED (distance): the mesh is isotopic, but not proved to be within " +
+                    frontend::text_of(*settings.hausdorff) +
+                    " of the zero set; a smaller --hausdorff may be, or --error");
+        return ExitCode::unable;
+    }
+    if (!certifies) session.say("by the theorem of Plantinga and Vegter; there is no certificate to verify");
+    if (certifies && !arguments.no_verify) verify(session, result, source.text);
     if (interrupt_flag()) return ExitCode::interrupted;
     if (!arguments.certificate.empty()) {
         session.timed("write", [&] { write_text(arguments.certificate, result.certificate); });
@@ -351,6 +381,18 @@ void add_implicit_command(CLI::App& app, Action& action) {
         ->type_name("X0 Y0 Z0 X1 Y1 Z1");
     add_options(*command, frontend::implicit_options(), arguments->options);
     command->add_option("--level", arguments->level, "mesh {function = C} instead of {function = 0}")->type_name("C");
+    command
+        ->add_option(
+            "--error", arguments->error,
+            "refine and simplify to this distance from the zero set, as sampled (default: as fine as the proof)")
+        ->type_name("LENGTH");
+    command
+        ->add_option("--hausdorff", arguments->hausdorff,
+                     "prove that mesh and zero set are within this length of each other; the mesh follows from it")
+        ->type_name("LENGTH");
+    command->add_option("--engine", arguments->engine, "growth or plantinga-vegter, which writes no certificate")
+        ->check(CLI::IsMember({"growth", "plantinga-vegter"}))
+        ->type_name("ENGINE");
     command->add_option("--certificate", arguments->certificate, "write the certificate, JSON, for `check`")
         ->type_name("FILE");
     command->add_flag("--no-verify", arguments->no_verify, "do not run the independent checker before writing");

@@ -41,4 +41,19 @@ struct ImplicitMeshCheck {
 ImplicitMeshCheck judge_implicit_mesh(const TriangleMesh& mesh, std::string_view function, std::string_view certificate,
                                       const RunControl& control = {});
 
+/// Decides what a mesh made by any program is to the zero set of a function in a box.
+///
+/// Input:      any triangle mesh, vertices shared, not within reach of the box's boundary; the function's text.
+/// Definition: the topology of the zero set is proved as mesh_implicit does. Where that W does not hold the mesh, W is
+///             grown along the mesh, leaves being split where the mesh leaves it, up to eight times. What is said is
+///             what judge_implicit_mesh says: the growth only proposes.
+/// Result:     `reasons` and `obstacles` say what hinders; outcome over_budget or undecided where the zero set's
+/// topology
+///             could not be proved.
+/// Errors:     ExpressionError; InputError for a box that makes no sense.
+/// Cost:       that of mesh_implicit and its check, some times.
+ImplicitMeshCheck check_mesh_against(const TriangleMesh& mesh, std::string_view function, const Point3& low,
+                                     const Point3& high, const ImplicitOptions& options = {},
+                                     const RunControl& control = {});
+
 }  // namespace certa

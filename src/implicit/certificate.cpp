@@ -4,6 +4,7 @@
 #include "implicit/certificate.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace certa::implicit {
 namespace {
@@ -71,7 +72,7 @@ std::vector<std::uint32_t> negative_points(const Octree& tree, const Triangulati
 
 std::string write_certificate(const Expression& function, const Octree& tree, const Triangulation& triangulation,
                               const Growth& growth, const Surface& surface,
-                              const std::vector<ImplicitComponent>& components) {
+                              const std::vector<ImplicitComponent>& components, std::optional<double> hausdorff) {
     std::string text = "{\"format\":\"certa implicit certificate\",\"version\":1,\n\"function\":";
     text += quoted(format_expression(function)) + ",\n\"grid\":{";
     append_numbers("first", tree.grid().first(), text);
@@ -99,6 +100,14 @@ std::string write_certificate(const Expression& function, const Octree& tree, co
     if (tree.is_clipped()) {
         text += "],\n\"loops\":[";
         for (const auto& [genus, loops] : forms) append_number(loops, text);
+    }
+    if (hausdorff) {
+        // mantissa 2^exponent
+        int exponent = 0;
+        const double mantissa = std::frexp(*hausdorff, &exponent);
+        text += "],\n\"hausdorff\":[";
+        append_number(static_cast<std::int64_t>(std::ldexp(mantissa, 53)), text);
+        append_number(exponent - 53, text);
     }
     return text + "]}\n";
 }

@@ -2,6 +2,7 @@
 // The certificate of a decided surface: everything that an independent program needs to verify it.
 #include <certa/implicit.h>
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,7 +15,8 @@ namespace certa::implicit {
 /// gives, the order of marks, the edges that carry the mesh's vertices, components.
 std::string write_certificate(const Expression& function, const Octree& tree, const Triangulation& triangulation,
                               const Growth& growth, const Surface& surface,
-                              const std::vector<ImplicitComponent>& components);
+                              const std::vector<ImplicitComponent>& components,
+                              std::optional<double> hausdorff = std::nullopt);
 
 /// The certificates of the factors of a product whose meshes follow each other in one mesh.
 std::string write_product_certificate(const std::vector<const ImplicitResult*>& factors);

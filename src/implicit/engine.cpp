@@ -17,6 +17,7 @@
 #include "implicit/product.h"
 #include "implicit/refine.h"
 #include "implicit/simplify.h"
+#include "implicit/subdivision.h"
 #include "implicit/surface.h"
 #include "interval/environment.h"
 
@@ -34,6 +35,7 @@ public:
           control_(control),
           certificate_(options.certificate),
           error_(options.error),
+          hausdorff_(options.hausdorff),
           memory_bytes_(options.memory_bytes),
           uncertified_(options.uncertified) {
         limits_.max_cells = options.max_cells.value_or(std::uint64_t{1} << 31);
@@ -143,13 +145,16 @@ private:
             result_.components.back().degree = component.degree8 / 8;
             if (component.parent != none) result_.components.back().parent = component.parent;
         }
-        if (error_ && !tree_.is_clipped() && result_.verdict == ImplicitVerdict::certified) {
+        if ((error_ || hausdorff_) && !tree_.is_clipped() && result_.verdict == ImplicitVerdict::certified) {
             const Frontier frontier(tree_, triangulation, growth);
-            surface = simplify(surface, &frontier, tape_, {*error_}, control_);
+            if (hausdorff_)
+                result_.hausdorff = simplify_to_distance(surface, frontier, tape_, *hausdorff_, control_);
+            else
+                surface = simplify(surface, &frontier, tape_, {*error_}, control_);
         }
         if (certificate_)
-            result_.certificate =
-                write_certificate(function_, tree_, triangulation, growth, surface, result_.components);
+            result_.certificate = write_certificate(function_, tree_, triangulation, growth, surface,
+                                                    result_.components, result_.hausdorff);
         result_.mesh = std::move(surface.mesh);
         result_.triangle_components = std::move(surface.component_of_triangle);
     }
@@ -160,7 +165,7 @@ private:
     Field field_;
     const RunControl& control_;
     bool certificate_;
-    std::optional<double> error_;
+    std::optional<double> error_, hausdorff_;
     std::optional<std::uint64_t> memory_bytes_;
     bool uncertified_;
     Limits limits_;
@@ -204,14 +209,22 @@ ImplicitResult mesh_implicit(const Expression& function, const Point3& low, cons
         implicit::refuse(DefectKind::option_out_of_range, "time_seconds must be at least 1");
     if (options.max_cells && *options.max_cells < 64)
         implicit::refuse(DefectKind::option_out_of_range, "max_cells must be at least 64");
-    for (const std::optional<double>& length : {options.error}) {
+    for (const std::optional<double>& length : {options.error, options.hausdorff}) {
         if (length && (!(*length > 0) || !std::isfinite(*length)))
-            implicit::refuse(DefectKind::option_out_of_range, "error must be a length above 0");
+            implicit::refuse(DefectKind::option_out_of_range, "error and hausdorff must be lengths above 0");
     }
+    if (options.hausdorff && options.clip)
+        implicit::refuse(DefectKind::option_out_of_range, "no distance is proved of surfaces that the box clips");
     const implicit::Grid grid = implicit::checked_grid(low, high);
     interval::require_sound_environment();
+    if (options.engine == ImplicitEngine::plantinga_vegter) {
+        if (options.clip || options.hausdorff)
+            implicit::refuse(DefectKind::option_out_of_range,
+                             "plantinga_vegter takes neither clip nor hausdorff: use the engine growth");
+        return implicit::mesh_by_subdivision(function, grid, options, control);
+    }
     const std::vector<Expression> factors = implicit::factors_of(function);
-    if (!factors.empty()) {
+    if (!factors.empty() && !options.hausdorff) {
         ImplicitOptions certain = options;
         certain.uncertified = false;
         ImplicitResult result = implicit::mesh_product(function, factors, grid, certain, control);
@@ -220,6 +233,8 @@ ImplicitResult mesh_implicit(const Expression& function, const Point3& low, cons
     }
     return implicit::certify_whole(function, grid, options, control);
 }
+
+const char* name_of(ImplicitEngine engine) { return engine == ImplicitEngine::growth ? "growth" : "plantinga-vegter"; }
 
 const char* name_of(ImplicitVerdict verdict) {
     switch (verdict) {

@@ -10,4 +10,7 @@ namespace certa::implicit {
 ImplicitResult certify_whole(const Expression& function, const Grid& grid, const ImplicitOptions& options,
                              const RunControl& control);
 
+/// The grid of a box. Errors: InputError for a box that makes no sense.
+Grid checked_grid(const Point3& low, const Point3& high);
+
 }  // namespace certa::implicit

@@ -103,6 +103,39 @@ Certainty Field::certify(const Region& box, unsigned axes) {
     return found;
 }
 
+Certainty Field::certify_variation(const Region& box) {
+    Certainty found;
+    const Jet<Interval>& natural = workspace_.evaluate<1>(box);
+    Interval value = natural.value;
+    std::array<Interval, 3> slopes = natural.gradient;
+    found.defined = interval::is_defined(value);
+    if (!found.defined) return found;
+    // Two copies of each enclosure: the gradients at two points are independent.
+    const auto varies_little = [&] {
+        return interval::sign_of(slopes[0] * slopes[0] + slopes[1] * slopes[1] + slopes[2] * slopes[2]) > 0;
+    };
+    const auto decide = [&] {
+        found.sign = static_cast<std::int8_t>(interval::sign_of(value));
+        found.slope = found.sign == 0 && varies_little() ? 1 : 0;
+        return found.sign != 0 || found.slope != 0;
+    };
+    if (decide()) return found;
+    const Center center = center_of(box);
+    const std::array<Interval, 6> hessian = workspace_.evaluate<2>(box).hessian;
+    const Jet<Interval>& middle = workspace_.evaluate<1>(center.point);
+    for (int a = 0; a < 3; ++a) {
+        const std::array<Interval, 3> row{hessian[static_cast<std::size_t>(hessian_index[a][0])],
+                                          hessian[static_cast<std::size_t>(hessian_index[a][1])],
+                                          hessian[static_cast<std::size_t>(hessian_index[a][2])]};
+        Interval& slope = slopes[static_cast<std::size_t>(a)];
+        slope = interval::intersect(slope, first_order(middle.gradient[static_cast<std::size_t>(a)], row, center));
+    }
+    const Interval second = first_order(middle.value, middle.gradient, center) + second_order_rest(hessian, center);
+    value = interval::intersect(value, interval::intersect(first_order(middle.value, slopes, center), second));
+    decide();
+    return found;
+}
+
 int Field::sign_on(const Region& box) {
     const Jet<Interval>& natural = workspace_.evaluate<1>(box);
     const Interval value = natural.value;

@@ -28,6 +28,9 @@ public:
     /// hinders the growth of W.
     /// Slopes are looked for along the given axes only, a bit each.
     Certainty certify(const Region& box, unsigned axes = 7);
+    /// The sign of f if proved; else `slope` says whether any two gradients in the box are proved to have a positive
+    /// product (the small normal variation of Plantinga and Vegter).
+    Certainty certify_variation(const Region& box);
     /// The proved sign of f on the convex hull of points within the box; 0: not proved.
     int sign_on(const Region& box);
     /// The value of f in doubles.

@@ -141,8 +141,12 @@ bool is_connected(std::uint64_t set, const std::uint64_t* masks) {
 
 class Grower {
 public:
-    Grower(const Triangulation& triangulation, LinkCache& links)
-        : t_(triangulation), links_(links), test_(triangulation.point_count()), state_(triangulation.point_count()) {
+    Grower(const Triangulation& triangulation, LinkCache& links, std::span<const char> favoured = {})
+        : t_(triangulation),
+          links_(links),
+          test_(triangulation.point_count()),
+          state_(triangulation.point_count()),
+          favoured_(favoured) {
         growth_.marked.assign(triangulation.point_count(), 0);
         for (std::uint32_t p = 0; p < state_.size(); ++p) state_[p] = t_.sign(p) > 0 ? positive : 0;
     }
@@ -157,9 +161,10 @@ public:
             if (((all ^ any) & positive) == 0) continue;
             for (const std::uint32_t p : t) enqueue(p);
         }
-        while (!queue_.empty()) {
-            const std::uint32_t point = queue_.front();
-            queue_.pop_front();
+        while (!queue_.empty() || !later_.empty()) {
+            std::deque<std::uint32_t>& queue = queue_.empty() ? later_ : queue_;
+            const std::uint32_t point = queue.front();
+            queue.pop_front();
             state_[point] &= static_cast<std::uint8_t>(~queued);
             try_to_join(point);
         }
@@ -172,7 +177,7 @@ private:
     void enqueue(std::uint32_t point) {
         if ((state_[point] & (queued | marked)) != 0 || !t_.may_join(point)) return;
         state_[point] |= queued;
-        queue_.push_back(point);
+        (favoured_.empty() || favoured_[point] != 0 ? queue_ : later_).push_back(point);
     }
 
     void try_to_join(std::uint32_t point) {
@@ -207,7 +212,8 @@ private:
     LinkCache& links_;
     LinkTest test_;
     std::vector<std::uint8_t> state_;
-    std::deque<std::uint32_t> queue_;
+    std::span<const char> favoured_;
+    std::deque<std::uint32_t> queue_, later_;
     Growth growth_;
 };
 
@@ -221,6 +227,12 @@ Growth grow(const Triangulation& triangulation, LinkCache& links) {
 Growth grow(const Triangulation& triangulation) {
     LinkCache links;
     return grow(triangulation, links);
+}
+
+Growth grow(const Triangulation& triangulation, std::span<const char> favoured) {
+    LinkCache links;
+    links.begin_round(triangulation);
+    return Grower(triangulation, links, favoured).run();
 }
 
 }  // namespace certa::implicit

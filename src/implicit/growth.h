@@ -1,6 +1,7 @@
 #pragma once
 // The growth of W: which points of T join it, in which order.
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "implicit/triangulation.h"
@@ -50,6 +51,8 @@ private:
 Growth grow(const Triangulation& triangulation);
 /// The same; `links` is kept for the triangulation that follows from this one.
 Growth grow(const Triangulation& triangulation, LinkCache& links);
+/// Points with a mark in `favoured` (per point) go first: where fronts meet and stop, it is elsewhere.
+Growth grow(const Triangulation& triangulation, std::span<const char> favoured);
 
 /// Whether one point may join now; the test of the definition above.
 class LinkTest {

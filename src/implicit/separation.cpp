@@ -74,6 +74,23 @@ bool segment_apart(const Point3& p, const Point3& q, const Corners& t) {
     return false;
 }
 
+bool box_apart(const Point3& low, const Point3& high, const Corners& t) {
+    if (!Bounds{low, high}.meets(Bounds::of(t))) return true;
+    std::array<Point3, 8> box;
+    for (unsigned c = 0; c < 8; ++c)
+        box[c] = {(c & 1u) ? high.x : low.x, (c & 2u) ? high.y : low.y, (c & 4u) ? high.z : low.z};
+    const double tolerance = tolerance_of(box, t);
+    const Corners g{t[1] - t[0], t[2] - t[1], t[0] - t[2]}, axes{Point3{1, 0, 0}, Point3{0, 1, 0}, Point3{0, 0, 1}};
+    if (separates(cross(g[0], g[1]), box, t, tolerance)) return true;
+    for (const Point3& axis : axes) {
+        if (separates(axis, box, t, tolerance)) return true;
+        for (const Point3& edge : g) {
+            if (separates(cross(axis, edge), box, t, tolerance)) return true;
+        }
+    }
+    return false;
+}
+
 bool apart_beyond_corner(const Corners& s, const Corners& t) {
     return segment_apart(s[1], s[2], t) && segment_apart(t[1], t[2], s);
 }

@@ -15,6 +15,7 @@ using Corners = std::array<Point3, 3>;
 /// contacts. That makes these filters; what they let pass is decided exactly by the checker.
 bool triangles_apart(const Corners& s, const Corners& t);
 bool segment_apart(const Point3& p, const Point3& q, const Corners& t);
+bool box_apart(const Point3& low, const Point3& high, const Corners& t);
 /// Triangles with the corner s[0] = t[0] in common, and nothing else.
 bool apart_beyond_corner(const Corners& s, const Corners& t);
 /// Triangles with the edge s[0] s[1] = t[0] t[1] in common: the angle between them is not nearly 0.

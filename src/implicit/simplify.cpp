@@ -12,6 +12,7 @@
 #include <set>
 
 #include "core/vector3.h"
+#include "implicit/offset.h"
 #include "implicit/reshape.h"
 
 namespace certa::implicit {
@@ -269,6 +270,19 @@ Surface simplify(const Surface& surface, const Frontier* frontier, const express
                  const Simplification& wanted, const RunControl& control) {
     if (surface.mesh.triangles.empty()) return surface;
     return Simplifier(surface, frontier, tape, wanted, control).run();
+}
+
+std::optional<double> simplify_to_distance(Surface& surface, const Frontier& frontier, const expression::Tape& tape,
+                                           double length, const RunControl& control) {
+    // The nearer the error to the length, the more pieces the proof needs.
+    for (const double share : {0.75, 0.5, 0.3}) {
+        Surface trial = simplify(surface, &frontier, tape, {share * length}, control);
+        const bool proved = find_far_triangles(trial.mesh, length, tape, control).empty() && !control.cancelled();
+        if (proved || share == 0.3) surface = std::move(trial);
+        if (proved) return length;
+        if (control.cancelled()) break;
+    }
+    return std::nullopt;
 }
 
 }  // namespace certa::implicit

@@ -2,6 +2,8 @@
 // Few, well-shaped triangles near the zero set, within W.
 #include <certa/run_control.h>
 
+#include <optional>
+
 #include "implicit/frontier.h"
 #include "implicit/surface.h"
 
@@ -18,5 +20,11 @@ struct Simplification {
 ///             (reshape.h). The error is sampled, not proved. `frontier` may be null: then nothing keeps the mesh in W.
 Surface simplify(const Surface& surface, const Frontier* frontier, const expression::Tape& tape,
                  const Simplification& wanted, const RunControl& control);
+
+/// Simplifies to as large an error as allows to prove that mesh and zero set are within a length of each other.
+///
+/// Result: the length, or nothing where that was not possible; `surface` is simplified in both cases.
+std::optional<double> simplify_to_distance(Surface& surface, const Frontier& frontier, const expression::Tape& tape,
+                                           double length, const RunControl& control);
 
 }  // namespace certa::implicit

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
 #include <mutex>
 #include <numeric>
@@ -20,6 +21,7 @@
 #include "verify/implicit_mesh.h"
 #include "verify/implicit_product.h"
 #include "verify/report.h"
+#include "verify/surface_distance.h"
 #include "verify/surface_in_w.h"
 
 namespace certa::verify {
@@ -436,6 +438,17 @@ void add_to(ImplicitCheck& result, std::string problem) {
     if (result.violations.size() < 100) result.violations.push_back(std::move(problem));
 }
 
+void check_claimed_distance(const TriangleMesh& mesh, const ImplicitFunction& function,
+                            const ImplicitCertificate& certificate, const ImplicitComplex& complex,
+                            const MeshFindings& found, const RunControl& control, ImplicitCheck& result) {
+    if (!found.refuting.empty() || !found.hindering.empty() || !found.faces_positive) return;  // a violation anyway
+    const double bound =
+        std::ldexp(static_cast<double>(certificate.hausdorff[0]), static_cast<int>(certificate.hausdorff[1]));
+    const DistanceQuestion question{mesh, bound, function, complex, found.frontier, found.component_of_triangle};
+    for (std::string& problem : check_distance(question, control)) add_to(result, std::move(problem));
+    if (result.violation_count == 0) result.hausdorff = bound;
+}
+
 /// Verifies W; a mesh whose vertices the certificate does not place on edges of T, or `any` mesh, is judged by what it
 /// is.
 MeshFindings check(const TriangleMesh& mesh, const ImplicitFunction& function, const ImplicitCertificate& certificate,
@@ -455,8 +468,12 @@ MeshFindings check(const TriangleMesh& mesh, const ImplicitFunction& function, c
             add_to(result, "the certificate of a clipped surface is for the mesh that it names the vertices of");
             return {};
         }
-        return judge_mesh(mesh, complex, check.verified(), control);
+        MeshFindings found = judge_mesh(mesh, complex, check.verified(), control);
+        if (!any && !certificate.hausdorff.empty())
+            check_claimed_distance(mesh, function, certificate, complex, found, control, result);
+        return found;
     }
+    if (!certificate.hausdorff.empty()) add_to(result, "a distance is claimed of a mesh that is not judged as a whole");
     for (std::string& problem : check_mesh_on_complex(mesh, complex, certificate, either_way))
         add_to(result, std::move(problem));
     MeshFindings on_edges;
@@ -592,6 +609,7 @@ ImplicitCheck check_implicit(const TriangleMesh& mesh, std::string_view function
         result.genera.clear();
         result.loops.clear();
         result.isotopic = false;
+        result.hausdorff.reset();
     }
     return result;
 }

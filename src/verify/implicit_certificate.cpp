@@ -17,7 +17,7 @@ public:
     using Keys = std::map<std::string, std::function<void()>, std::less<>>;
 
     /// {"key": value, ...} with exactly the given keys, in any order; `optional` may be missing.
-    void object(const Keys& keys, std::string_view optional = {}) {
+    void object(const Keys& keys, const std::set<std::string>& optional = {}) {
         expect('{');
         std::set<std::string> seen;
         do {
@@ -30,7 +30,7 @@ public:
         } while (accept(','));
         expect('}');
         for (const auto& [key, read] : keys) {
-            if (seen.count(key) == 0 && key != optional) fail("the key " + key + " is missing");
+            if (seen.count(key) == 0 && optional.count(key) == 0) fail("the key " + key + " is missing");
         }
     }
 
@@ -144,8 +144,15 @@ ImplicitCertificate certificate_in(Reader& in) {
                     c.clip = true;
                     c.loops = in.integers();
                 }},
+               {"hausdorff",
+                [&] {
+                    c.hausdorff = in.integers();
+                    if (c.hausdorff.size() != 2 || c.hausdorff[0] <= 0 || c.hausdorff[0] >= std::int64_t{1} << 53 ||
+                        c.hausdorff[1] < -900 || c.hausdorff[1] > 900)
+                        in.fail("hausdorff is no length");
+                }},
                {"genera", [&] { c.genera = in.integers(); }}},
-              "loops");
+              {"loops", "hausdorff"});
     return c;
 }
 

@@ -20,8 +20,9 @@ struct ImplicitCertificate {
     std::array<std::int64_t, 3> first{}, count{}, exponent{};
     std::int64_t resolution = 0;
     std::vector<std::int64_t> negative_points, marks, vertex_edges, genera;
-    bool clip = false;                ///< the surface may meet the box
-    std::vector<std::int64_t> loops;  ///< per component, in the order of genera; of a clipped surface only
+    bool clip = false;                    ///< the surface may meet the box
+    std::vector<std::int64_t> loops;      ///< per component, in the order of genera; of a clipped surface only
+    std::vector<std::int64_t> hausdorff;  ///< empty, or m and e: a bound m 2^e on the distance
 };
 
 /// Of a product: a certificate per factor, whose meshes follow each other in one mesh.
@@ -36,7 +37,8 @@ bool is_product_certificate(std::string_view text);
 ImplicitProductCertificate read_product_certificate(std::string_view text);
 
 /// Reads the JSON of docs/formats.md: an object of strings, integers, arrays of integers and one object of such.
-/// Errors: UnreadableCertificate, also for keys that are missing, unknown or given twice. `loops` makes a clipped one.
+/// Errors: UnreadableCertificate, also for keys that are missing, unknown or given twice. `loops` makes a clipped one;
+/// `hausdorff` may be missing, too.
 ImplicitCertificate read_certificate(std::string_view text);
 
 }  // namespace certa::verify

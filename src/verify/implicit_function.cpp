@@ -5,6 +5,7 @@
 // mean value do not suffice. Slower, but another argument.
 #include "verify/implicit_function.h"
 
+#include <algorithm>
 #include <cmath>
 
 namespace certa::verify {
@@ -287,6 +288,53 @@ bool Enclosures::on_parts(const BoxOfDoubles& box, int axis, int sign, int depth
         if (!repeated && !on_parts(child, axis, sign, depth + 1)) return false;
     }
     return true;
+}
+
+bool Enclosures::proves_sign_on_triangle(const TriangleOfBoxes& t, int sign,
+                                         BoxOfDoubles (*middle)(const BoxOfDoubles&, const BoxOfDoubles&), int depth) {
+    BoxOfDoubles hull = t[0];
+    std::array<double, 3> center{};
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (const BoxOfDoubles& corner : t) {
+            hull.low[i] = std::min(hull.low[i], corner.low[i]);
+            hull.high[i] = std::max(hull.high[i], corner.high[i]);
+        }
+        // Any point of the hull will do.
+        center[i] = std::clamp((t[0].low[i] + t[1].low[i] + t[2].low[i]) / 3, hull.low[i], hull.high[i]);
+        mpfi_interv_d(place_[i], hull.low[i], hull.high[i]);
+    }
+    evaluate(place_, true);
+    const Values& whole = values_[function_.result()];
+    if (whole.defined && sign_of(whole.value) == sign) return true;
+    if (whole.defined && whole.smooth) {
+        std::array<mpfi_t, 3> at_corner;
+        for (std::size_t k = 0; k < 3; ++k) {
+            mpfi_init2(at_corner[k], mpfi_get_prec(sum_));
+            mpfi_set_ui(at_corner[k], 0);
+            for (std::size_t i = 0; i < 3; ++i) {
+                mpfi_interv_d(t_, t[k].low[i], t[k].high[i]);
+                mpfi_sub_d(t_, t_, center[i]);
+                mpfi_mul(t_, t_, whole.slope[i]);
+                mpfi_add(at_corner[k], at_corner[k], t_);
+            }
+        }
+        for (std::size_t i = 0; i < 3; ++i) mpfi_set_d(place_[i], center[i]);
+        evaluate(place_, false);
+        const Values& middle_value = values_[function_.result()];
+        bool all = middle_value.defined;
+        for (mpfi_t& value : at_corner) {
+            mpfi_add(value, value, middle_value.value);
+            all = all && sign_of(value) == sign;
+            mpfi_clear(value);
+        }
+        if (all) return true;
+    }
+    if (depth == 6) return false;
+    const BoxOfDoubles a = middle(t[1], t[2]), b = middle(t[2], t[0]), c = middle(t[0], t[1]);
+    return proves_sign_on_triangle({t[0], c, b}, sign, middle, depth + 1) &&
+           proves_sign_on_triangle({c, t[1], a}, sign, middle, depth + 1) &&
+           proves_sign_on_triangle({b, a, t[2]}, sign, middle, depth + 1) &&
+           proves_sign_on_triangle({a, b, c}, sign, middle, depth + 1);
 }
 
 std::array<double, 4> Enclosures::guess(const std::array<double, 3>& place) {

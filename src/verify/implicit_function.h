@@ -94,6 +94,12 @@ public:
     /// Whether f - t g has no zero on the box, by the mean value form. `other` encloses g.
     bool combination_misses_zero(Enclosures& other, double t, const BoxOfDoubles& box);
 
+    /// Whether f has this sign on the convex hull of three points, each known to lie in a box: by the mean value form,
+    /// whose linear part is largest and smallest at corners; else on the four pieces that the middles of edges make.
+    using TriangleOfBoxes = std::array<BoxOfDoubles, 3>;
+    bool proves_sign_on_triangle(const TriangleOfBoxes& t, int sign,
+                                 BoxOfDoubles (*middle)(const BoxOfDoubles&, const BoxOfDoubles&), int depth = 0);
+
 private:
     struct Values {
         mpfi_t value;

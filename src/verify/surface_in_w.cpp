@@ -36,6 +36,7 @@ public:
             if (misses_itself() && agrees_with_w() && misses_frontier()) locate();
         }
         if (control_.cancelled()) findings_.hindering.push_back("the check was cancelled");
+        findings_.component_of_triangle = std::move(surface_.component_of_triangle);
         std::sort(findings_.triangles.begin(), findings_.triangles.end());
         findings_.triangles.erase(std::unique(findings_.triangles.begin(), findings_.triangles.end()),
                                   findings_.triangles.end());
@@ -385,7 +386,8 @@ private:
     }
 
     bool misses_frontier() {
-        const std::vector<Corners> faces = frontier();
+        findings_.frontier = frontier();
+        const std::vector<Corners>& faces = findings_.frontier;
         std::vector<BoundingBox> boxes;
         for (const Corners& face : faces) boxes.push_back(BoundingBox::of(face));
         const BoxTree tree(std::move(boxes));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "verify/implicit_complex.h"
+#include "verify/surface_contacts.h"
 
 namespace certa::verify {
 
@@ -39,7 +40,9 @@ struct MeshFindings {
     std::vector<std::string> refuting, hindering;  ///< reasons; a mesh without either is isotopic
     std::vector<std::uint32_t> triangles;          ///< named by the reasons, sorted
     std::vector<int> genera;                       ///< of the mesh, sorted; empty where it is no closed surface
-    bool faces_positive = false;                   ///< isotopic, and every triangle faces f > 0
+    std::vector<std::uint32_t> component_of_triangle;
+    std::vector<Corners> frontier;  ///< of W; filled where the mesh was compared with it
+    bool faces_positive = false;    ///< isotopic, and every triangle faces f > 0
 };
 
 /// Decides in this order: closed surface with the form of a manifold; no contact with itself; components, genera and

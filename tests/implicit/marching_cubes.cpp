@@ -77,7 +77,8 @@ private:
                 loop.push_back(at->second);
                 next.erase(at);
             }
-            for (std::size_t q = 1; q + 2 < loop.size(); ++q) mesh_.triangles.push_back({loop[0], loop[q], loop[q + 1]});
+            for (std::size_t q = 1; q + 2 < loop.size(); ++q)
+                mesh_.triangles.push_back({loop[0], loop[q + 1], loop[q]});
         }
     }
 

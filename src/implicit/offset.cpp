@@ -1,0 +1,86 @@
+// Each triangle is moved along the gradients at its corners; f is enclosed on it by the mean value form, whose linear
+// part is extreme at corners; where that is not enough, on four pieces of it.
+#include "implicit/offset.h"
+
+#include <cmath>
+
+#include "core/parallel.h"
+#include "implicit/field.h"
+
+namespace certa::implicit {
+namespace {
+
+constexpr int deepest = 5;  // the checker goes one further
+
+class TriangleSigns {
+public:
+    explicit TriangleSigns(const expression::Tape& tape) : workspace_(tape) { interval::require_sound_environment(); }
+
+    bool proves(const std::array<Region, 3>& t, int sign, int depth = 0) {
+        Region hull = t[0], center;
+        for (std::size_t a = 0; a < 3; ++a) {
+            for (const Region& corner : t) hull[a] = interval::hull(hull[a], corner[a]);
+            center[a] = Interval(hull[a].lo / 2 + hull[a].hi / 2);
+        }
+        const auto& jet = workspace_.evaluate<1>(hull);
+        if (interval::sign_of(jet.value) == sign) return true;
+        if (interval::is_defined(jet.value)) {
+            const std::array<Interval, 3> slope = jet.gradient;
+            const Interval middle = workspace_.evaluate<0>(center).value;
+            bool all = true;
+            for (const Region& corner : t) {
+                Interval value = middle;
+                for (std::size_t a = 0; a < 3; ++a) value = value + slope[a] * (corner[a] - center[a]);
+                all = all && interval::sign_of(value) == sign;
+            }
+            if (all) return true;
+        }
+        if (depth == deepest) return false;
+        const auto between = [](const Region& p, const Region& q) {
+            Region m;
+            for (std::size_t a = 0; a < 3; ++a) m[a] = Interval(0.5) * (p[a] + q[a]);
+            return m;
+        };
+        const Region a = between(t[1], t[2]), b = between(t[2], t[0]), c = between(t[0], t[1]);
+        return proves({t[0], c, b}, sign, depth + 1) && proves({c, t[1], a}, sign, depth + 1) &&
+               proves({b, a, t[2]}, sign, depth + 1) && proves({a, b, c}, sign, depth + 1);
+    }
+
+private:
+    expression::Workspace<Interval> workspace_;
+};
+
+}  // namespace
+
+std::vector<std::uint32_t> find_far_triangles(const TriangleMesh& mesh, double length, const expression::Tape& tape,
+                                              const RunControl& control) {
+    std::vector<Point3> ways(mesh.positions.size());
+    Field field(tape);
+    for (std::size_t v = 0; v < ways.size(); ++v) {
+        const auto& g = field.slope(mesh.positions[v]).gradient;
+        const double scale = length * (1 - 0x1p-20) / std::hypot(g[0], g[1], g[2]);
+        ways[v] = {scale * g[0], scale * g[1], scale * g[2]};
+    }
+    std::vector<char> far(mesh.triangles.size(), 0);
+    core::parallel_for(mesh.triangles.size(), 32, control, [&](std::size_t begin, std::size_t end) {
+        TriangleSigns signs(tape);
+        for (std::size_t i = begin; i < end && !control.cancelled(); ++i) {
+            for (const int side : {1, -1}) {
+                std::array<Region, 3> t;
+                for (std::size_t k = 0; k < 3; ++k) {
+                    const std::uint32_t v = index_of(mesh.triangles[i][k]);
+                    const Point3 &p = mesh.positions[v], &w = ways[v];
+                    t[k] = {Interval(p.x + side * w.x), Interval(p.y + side * w.y), Interval(p.z + side * w.z)};
+                }
+                if (!signs.proves(t, side)) far[i] = 1;
+            }
+        }
+    });
+    std::vector<std::uint32_t> result;
+    for (std::uint32_t i = 0; i < far.size(); ++i) {
+        if (far[i]) result.push_back(i);
+    }
+    return result;
+}
+
+}  // namespace certa::implicit
