@@ -64,6 +64,7 @@ public:
 
     double cost_of(const Piece& piece) const {
         double cost = piece.size() == 4 ? quad_cost : triangle_cost;
+        cost += flatness_cost(piece);
         for (std::size_t i = 0; i < piece.size(); ++i) {
             const Point3& a = ring_[piece[(i + piece.size() - 1) % piece.size()]];
             const Point3& c = ring_[piece[(i + 1) % piece.size()]];
@@ -78,6 +79,20 @@ private:
         double cost = 0.0;
         std::size_t k = 0, l = 0;  // the piece over (i, j): i, k, j, or i, k, l, j when l != 0
     };
+
+    /// Pieces without area, such as corners all in one side, are the last resort.
+    double flatness_cost(const Piece& piece) const {
+        Point3 area;
+        double longest = 0.0;
+        const Point3& origin = ring_[piece[0]];
+        for (std::size_t i = 1; i + 1 < piece.size(); ++i)
+            area = area + cross(ring_[piece[i]] - origin, ring_[piece[i + 1]] - origin);
+        for (const Index a : piece)
+            for (const Index b : piece) longest = std::max(longest, dot(ring_[a] - ring_[b], ring_[a] - ring_[b]));
+        constexpr double flat = 2e-3;
+        const double shape = longest > 0.0 ? dot(area, normal_) / longest : 0.0;
+        return shape < flat ? 0.1 * reflex_cost * (1.0 - shape / flat) : 0.0;
+    }
 
     /// Triangles may have sharp corners, only flat ones are bad.
     double triangle_corner_cost(const Point3& a, const Point3& b, const Point3& c) const {

@@ -104,6 +104,22 @@ TEST(Templates, KnownOnes) {
     EXPECT_EQ(count({2, 0, 1, 0}), (Count{2, 1}));
 }
 
+TEST(Templates, NoPieceWithoutAreaInAThinPolygon) {
+    // Six nodes in one straight side, close to the other side.
+    for (const double height : {0.3, 0.1, 0.03}) {
+        std::vector<Point3> ring;
+        for (int i = 0; i < 6; ++i) ring.push_back({0.2 * i, 0.0, 0.0});
+        ring.push_back({0.9, height, 0.0});
+        ring.push_back({0.1, height, 0.0});
+        double sum = 0.0;
+        for (const auto& piece : cut_into_quads(ring)) {
+            EXPECT_GT(area(ring, piece), 0.05 * height);
+            sum += area(ring, piece);
+        }
+        EXPECT_NEAR(sum, 0.9 * height, 1e-12);
+    }
+}
+
 TEST(Templates, LargePolygonsArePaired) {
     const Count count = expect_tiling(regular(40));
     EXPECT_GE(count.quads, 14);
