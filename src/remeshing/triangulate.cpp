@@ -77,18 +77,16 @@ private:
             return v != a && v != b && v != c && turn(a, b, v) >= 0.0 && turn(b, c, v) >= 0.0 && turn(c, a, v) >= 0.0;
         });
     }
-    /// Prohibitive where the triangle turns away, and nearly so where it is a needle without area.
+    /// Prohibitive where the triangle turns away, and nearly so where it is a needle with next to no area.
     double cost_of_triangle(std::size_t a, std::size_t b, std::size_t c) const {
         const Point3 area = cross(at(b) - at(a), at(c) - at(a));
         const double size = norm(area), forward = dot(area, normal_);
         const double longest = std::max(
             {dot(at(b) - at(a), at(b) - at(a)), dot(at(c) - at(b), at(c) - at(b)), dot(at(a) - at(c), at(a) - at(c))});
         double cost = 0.0;
-        if (size < 1e-6 * longest) {
-            cost += 1e3;
-        } else if (forward < 0.1 * size) {
-            cost += forward > 0.0 ? 1e3 : 1e6;
-        }
+        constexpr double thin = 0.02;
+        if (size < thin * longest) cost += 1e3 * (1.0 - size / (thin * longest));
+        if (size > 1e-6 * longest && forward < 0.1 * size) cost += forward > 0.0 ? 1e3 : 1e6;
         return cost * square_ * std::sqrt(square_);
     }
     double cost_of_diagonal(std::size_t a, std::size_t b) const {
