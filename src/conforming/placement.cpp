@@ -18,6 +18,10 @@ using delaunay::PlanarPoint;
 constexpr std::uint8_t first_acute = 1, second_acute = 2, known = 4;
 constexpr double margin = 0.1;  // of a piece: nearer to its ends no copied distance is used
 
+double turn(const PlanarPoint& a, const PlanarPoint& b, const PlanarPoint& c) {
+    return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
+}
+
 /// The power of two nearest to `length` in ratio.
 double shell_near(double length) { return std::exp2(std::round(std::log2(length))); }
 
@@ -87,7 +91,7 @@ Point3 Placement::split_of(const Piece& piece, const Point3* reference) {
     return at(fits(t) ? t : middle);
 }
 
-std::optional<Point3> Placement::crossing_of(const Piece& piece, std::uint32_t f, std::uint32_t witness) {
+std::optional<Point3> Placement::crossing_of(const Piece& piece, std::uint32_t f, std::uint32_t witness) const {
     const Complex& c = mesh_.complex;
     std::vector<std::uint32_t> segments;
     if (witness < c.points.size()) {
@@ -96,37 +100,41 @@ std::optional<Point3> Placement::crossing_of(const Piece& piece, std::uint32_t f
     } else if (mesh_.owners[witness - c.points.size()].on_segment) {
         segments.push_back(mesh_.owners[witness - c.points.size()].index);
     }
-    const Point3 &a = mesh_.triangulation.position(piece.a), &b = mesh_.triangulation.position(piece.b);
-    for (const Side& side : c.facet_sides[f]) {
-        if (side.segment == piece.owner) continue;
-        const Point3& origin = c.points[c.segments[side.segment][0]];
-        Point3 axis = c.points[c.segments[side.segment][1]] - origin;
-        axis = (1.0 / norm(axis)) * axis;
-        const auto flat = [&](const Point3& p) {
-            const Point3 d = p - origin;
-            const double z = dot(d, axis);
-            return PlanarPoint{z, norm(d - z * axis)};
-        };
-        for (const std::uint32_t s : segments) {
-            if (s == side.segment || s == piece.owner) continue;
+    for (const std::uint32_t s : segments) {
+        for (const Side& side : c.facet_sides[f]) {
+            if (s == piece.owner || s == side.segment || side.segment == piece.owner) continue;
             const auto of_s = c.segment_facets[s];
             const auto of_side = c.segment_facets[side.segment];
-            const bool is_page = std::any_of(of_s.begin(), of_s.end(), [&](std::uint32_t k) {
+            const bool is_on_page = std::any_of(of_s.begin(), of_s.end(), [&](std::uint32_t k) {
                 return k != f && std::find(of_side.begin(), of_side.end(), k) != of_side.end();
             });
-            if (!is_page) continue;
-            const PlanarPoint p = flat(a), q = flat(b), u = flat(c.points[c.segments[s][0]]),
-                              v = flat(c.points[c.segments[s][1]]);
-            const double side_p = (v.x - u.x) * (p.y - u.y) - (v.y - u.y) * (p.x - u.x);
-            const double side_q = (v.x - u.x) * (q.y - u.y) - (v.y - u.y) * (q.x - u.x);
-            const double side_u = (q.x - p.x) * (u.y - p.y) - (q.y - p.y) * (u.x - p.x);
-            const double side_v = (q.x - p.x) * (v.y - p.y) - (q.y - p.y) * (v.x - p.x);
-            if ((side_p > 0.0) == (side_q > 0.0) || (side_u > 0.0) == (side_v > 0.0)) continue;
-            const double t = side_p / (side_p - side_q);
-            if (t > 0.02 && t < 0.98) return a + t * (b - a);
+            if (!is_on_page) continue;
+            if (const auto crossing = crossing_about(side.segment, piece, s)) return crossing;
         }
     }
     return std::nullopt;
+}
+
+std::optional<Point3> Placement::crossing_about(std::uint32_t axis, const Piece& piece, std::uint32_t s) const {
+    constexpr double near_end = 0.02;  // of the piece
+    const Complex& c = mesh_.complex;
+    const Point3& origin = c.points[c.segments[axis][0]];
+    Point3 direction = c.points[c.segments[axis][1]] - origin;
+    direction = (1.0 / norm(direction)) * direction;
+    const auto across = [&](const Point3& p) {
+        const Point3 d = p - origin;
+        return d - dot(d, direction) * direction;
+    };
+    const Point3 &a = mesh_.triangulation.position(piece.a), &b = mesh_.triangulation.position(piece.b);
+    const Point3 &begin = c.points[c.segments[s][0]], &end = c.points[c.segments[s][1]];
+    if (dot(across(0.5 * (a + b)), across(0.5 * (begin + end))) <= 0.0) return std::nullopt;
+    const auto flat = [&](const Point3& p) { return PlanarPoint{dot(p - origin, direction), norm(across(p))}; };
+    const PlanarPoint p = flat(a), q = flat(b), u = flat(begin), v = flat(end);
+    const double side_p = turn(u, v, p), side_q = turn(u, v, q);
+    if ((side_p > 0.0) == (side_q > 0.0) || (turn(p, q, u) > 0.0) == (turn(p, q, v) > 0.0)) return std::nullopt;
+    const double t = side_p / (side_p - side_q);
+    if (t < near_end || t > 1.0 - near_end) return std::nullopt;
+    return a + t * (b - a);
 }
 
 std::optional<Point3> Placement::rotate(std::uint32_t f, const Point3& on_line, const Point3& direction,

@@ -25,7 +25,7 @@ public:
 
     /// Where a piece of a side of f crosses the image of a segment that `witness` lies on, rotated into f about a
     /// common side; nothing where none does, or too near to an end of the piece.
-    std::optional<Point3> crossing_of(const Piece& piece, std::uint32_t f, std::uint32_t witness);
+    std::optional<Point3> crossing_of(const Piece& piece, std::uint32_t f, std::uint32_t witness) const;
 
     /// A point of facet f that looks like vertex q from the line or point where f meets an element that q lies on, and
     /// lies within `radius` of `center` (both in the plane of f); or the foot of q where it is close to the plane.
@@ -38,6 +38,7 @@ private:
     std::vector<std::uint8_t> acute_;  // per segment: bit 0, 1 first, second end; bit 2 known
     std::vector<std::uint32_t> facets_;
 
+    std::optional<Point3> crossing_about(std::uint32_t axis, const Piece& piece, std::uint32_t segment) const;
     std::uint8_t acute_ends(std::uint32_t segment);
     bool is_acute(std::uint32_t segment, std::uint32_t end) const;
     std::optional<Point3> rotate(std::uint32_t f, const Point3& on_line, const Point3& direction, const Point3& center,
