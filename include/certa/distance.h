@@ -41,7 +41,7 @@ struct SurfaceDistance {
 /// Definition: of two closed sets A, B: max over a in A of the distance from a to B, and the same the other way.
 /// Input:      any polygons: neither orientation, manifoldness nor closedness is asked for. At least one polygon each.
 ///             A polygon of more than three corners is measured on the triangulation that is nearest to the other
-///             surface (a quad on the diagonal nearer to it).
+///             surface (a quad on the diagonal nearer to it; where both are, on the one that leaves no needle).
 /// Result:     lengths in the input's unit. The bounds hold for every triangulation of every polygon of up to six
 ///             corners by triangles that face the polygon's own side (by Newell's normal), in any combination. Of
 ///             larger polygons they hold for every triangulation that is a graph over the plane of the vertices' mean

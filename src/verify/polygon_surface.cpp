@@ -90,6 +90,15 @@ Triples clip_ears(const std::vector<Point3>& ring, const Point3& normal) {
     return triples;
 }
 
+/// Where diagonals are equally near, as in a plane, triangles with an area are preferred: counted like a distance of
+/// 1e-7, coordinates being at most 1.
+double needle_cost(const std::array<Point3, 3>& p) {
+    const double longest = std::max({distance(p[0], p[1]), distance(p[1], p[2]), distance(p[2], p[0])});
+    constexpr double thin = 0.01;
+    const double shape = longest > 0.0 ? norm(cross(p[1] - p[0], p[2] - p[0])) / (longest * longest) : 0.0;
+    return shape < thin ? 1e-14 * longest * (1.0 - shape / thin) : 0.0;
+}
+
 }  // namespace
 
 void find_polygon_defects(const PolygonMesh& mesh, const std::string& name, std::vector<Defect>& defects) {
@@ -265,6 +274,7 @@ std::size_t PolygonSurface::find_best_choice(std::size_t q, const core::Triangle
         double cost = 0.0;
         for (const std::uint32_t i : choice(q, k)) {
             const Corners& t = possible(q)[i];
+            cost += needle_cost(points(t));
             for (std::size_t c = 0; c < 3; ++c) {
                 const std::uint32_t a = t[c], b = t[(c + 1) % 3];
                 if (is_side(a, b)) continue;  // diagonals come twice, once from each side
