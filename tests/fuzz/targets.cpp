@@ -1,6 +1,7 @@
 // The body of every fuzzer, and of the replay of the corpus. Law: a reader refuses (IoError) or returns a document;
 // a document that its format can carry survives writing and reading.
 // The language of expressions has the same law: what is accepted is formatted and read back to the same text.
+// A certificate is refused, or describes an octree from which the checker builds its triangulation.
 // A set of TetGen's mesh files is one input: .node, .ele, .face, .edge, separated by lines "%%".
 #include "targets.h"
 
@@ -14,12 +15,14 @@
 #include <string>
 
 #include "io/formats.h"
+#include "verify/implicit_certificate.h"
+#include "verify/implicit_complex.h"
 
 namespace certa::fuzz {
 namespace {
 
-constexpr std::array<std::string_view, 11> names{"off",      "obj",   "ply", "stl", "poly",      "smesh",
-                                                 "node_set", "medit", "vtu", "msh", "expression"};
+constexpr std::array<std::string_view, 12> names{"off",      "obj",   "ply", "stl", "poly",       "smesh",
+                                                 "node_set", "medit", "vtu", "msh", "expression", "certificate"};
 
 constexpr std::string_view separator = "%%\n";
 
@@ -83,12 +86,25 @@ void run_expression(std::string_view bytes) {
     evaluate(*function, {0.3, -0.7, 1.1});
 }
 
+void run_certificate(std::string_view bytes) {
+    try {
+        if (!verify::is_product_certificate(bytes)) {
+            const verify::ImplicitComplex complex(verify::read_certificate(bytes));
+            return;
+        }
+        for (const verify::ImplicitCertificate& factor : verify::read_product_certificate(bytes).factors)
+            const verify::ImplicitComplex complex(factor);
+    } catch (const verify::UnreadableCertificate&) {
+    }
+}
+
 }  // namespace
 
 std::span<const std::string_view> target_names() { return names; }
 
 void run_target(std::string_view name, std::string_view bytes) {
     if (name == "expression") return run_expression(bytes);
+    if (name == "certificate") return run_certificate(bytes);
     const std::optional<MeshDocument> document = parse(name, bytes);
     if (!document) return;
     const std::optional<std::string> first = format(name, *document);
