@@ -93,6 +93,7 @@ private:
     double count_of(const Draft& draft) const;
     void search();
     void meet_error();
+    double refine_where_far(double error, double limit);
     double wanted_error() const {
         return options_.error ? options_.error->resolve(mesh_.diagonal) : 2e-3 * mesh_.diagonal;
     }
@@ -312,6 +313,39 @@ void Remesher::search() {
                                            std::to_string(static_cast<std::size_t>(wanted)));
 }
 
+/// Caps the spacing around vertices and triangle centres of either surface that are farther than `limit` from the
+/// other. Returns the share of the input's vertices that are.
+double Remesher::refine_where_far(double error, double limit) {
+    const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
+    caps_.resize(mesh_.wedge_count(), 0.0);
+    const auto lower = [&](Index w) {
+        const double cap = 0.45 * std::min(spacing.at[0][w], spacing.at[1][w]);
+        if (caps_[w] == 0.0 || cap < caps_[w]) caps_[w] = cap;
+    };
+    const core::TriangleTree input(input_.positions, input_.triangles);
+    const CoarseMesh triangles = make_triangles(placed_, input);
+    std::vector<Triangle> ids;
+    for (std::size_t i = 0; i < triangles.polygon_count(); ++i) {
+        const auto t = triangles.polygon(i);
+        ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+        const Point3 &a = triangles.points[t[0]], &b = triangles.points[t[1]], &c = triangles.points[t[2]];
+        for (const Point3& p : {(1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
+            const core::NearestPoint nearest = input.find_nearest(p);
+            if (nearest.squared_distance <= limit * limit) continue;
+            for (Index k = 0; k < 3; ++k) lower(mesh_.wedges[3 * nearest.triangle + k]);
+        }
+    }
+    const core::TriangleTree result(triangles.points, ids);
+    std::size_t far = 0;
+    for (Index w = 0; w < mesh_.wedge_count(); ++w) {
+        const Point3& p = mesh_.points[mesh_.wedge_vertices[w]];
+        if (result.find_nearest(p).squared_distance <= limit * limit) continue;
+        lower(w);
+        ++far;
+    }
+    return static_cast<double>(far) / static_cast<double>(mesh_.wedge_count());
+}
+
 /// Lines closer together until the result's distance to the input, proved for every way to fill its polygons, is within
 /// the bound.
 void Remesher::meet_error() {
@@ -323,7 +357,7 @@ void Remesher::meet_error() {
         input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
     }
     const double wanted = wanted_error();
-    for (int round = 0; round < 8; ++round) {
+    for (int round = 0; round < 10; ++round) {
         best_.emplace(draft(error));
         if (control_.cancelled()) return;
         finish();
@@ -342,6 +376,7 @@ void Remesher::meet_error() {
             const bool may_cut = options_.output == RemeshOutput::quad_dominant && options_.subdivide == 0;
             for (const double limit : {0.75, 0.3, 0.1, 0.0}) {
                 if (control_.cancelled()) return;
+                if (limit < (round < 3 ? 0.75 : round < 5 ? 0.3 : 0.0)) break;  // more lines first: they keep quads
                 if (may_cut) emit(cut_warped(placed_, limit * wanted));
                 distance = measure_distance(result_.mesh, input, options, control_);
                 reached = distance.hausdorff_bound;
@@ -355,7 +390,9 @@ void Remesher::meet_error() {
         }
         watch_.stage("certificate");
         if (control_.cancelled()) return;
-        error *= std::clamp(0.85 * wanted / reached, 0.25, 0.7);
+        // Far in a few places: lines closer together there; far nearly everywhere: a smaller epsilon.
+        const double share = refine_where_far(error, 0.75 * std::min(wanted, reached));
+        if (share > 0.1 || share == 0.0) error *= std::clamp(0.85 * wanted / reached, 0.25, 0.7);
     }
     result_.outcome = Outcome::over_budget;
     result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
