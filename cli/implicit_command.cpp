@@ -225,6 +225,9 @@ std::optional<double> length_of(const char* flag, const std::string& text, doubl
 ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
     if (arguments.output.given()) require_surface_format(session, arguments.output);
     if (!arguments.certificate.empty()) session.require_writable({arguments.certificate, Format::off});
+    if (arguments.options.uncertified && arguments.output.given() &&
+        (arguments.output.format ? *arguments.output.format : *format_of(arguments.output.path)) == Format::stl)
+        throw UsageError("a guess must be labelled in its file, which STL cannot; write .off, .obj, .ply or .vtu");
     FunctionArgument::Source source = arguments.function.read();
     session.report()["input"] = {{"name", source.name}};
     Expression function = parse_expression(source.text, source.name);

@@ -167,6 +167,7 @@ std::string write_obj(const MeshDocument& document) {
     const PiecewiseLinearComplex& complex = document.complex;
     TextOutput out;
     out.reserve(complex.positions.size() * 64 + complex.corners.size() * 10);
+    if (!document.remark.empty()) out << "# " << remark_line(document) << '\n';
     if (complex.positions.empty()) out << "# no vertices\n";
     for (const Point3& p : complex.positions) out << "v " << p << '\n';
     for (std::size_t i = 0; i < complex.polygon_count(); ++i) {

@@ -109,7 +109,9 @@ std::string write_off(const MeshDocument& document) {
     const PiecewiseLinearComplex& complex = document.complex;
     TextOutput out;
     out.reserve(complex.positions.size() * 64 + complex.corners.size() * 10);
-    out << "OFF\n" << complex.positions.size() << ' ' << complex.polygon_count() << " 0\n";
+    out << "OFF\n";
+    if (!document.remark.empty()) out << "# " << remark_line(document) << '\n';
+    out << complex.positions.size() << ' ' << complex.polygon_count() << " 0\n";
     for (const Point3& p : complex.positions) out << p << '\n';
     for (std::size_t i = 0; i < complex.polygon_count(); ++i) {
         const auto corners = polygon_corners(complex, i);

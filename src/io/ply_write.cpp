@@ -41,8 +41,10 @@ public:
         index_type_ = complex_.positions.size() > std::numeric_limits<std::int32_t>::max() ? "uint" : "int";
         for (std::size_t i = 0; i < complex_.polygon_count(); ++i)
             wide_lists_ |= polygon_corners(complex_, i).size() > 255;
-        out_ << "ply\nformat " << (binary_ ? "binary_little_endian" : "ascii") << " 1.0\nelement vertex "
-             << complex_.positions.size() << "\nproperty double x\nproperty double y\nproperty double z\n";
+        out_ << "ply\nformat " << (binary_ ? "binary_little_endian" : "ascii") << " 1.0\n";
+        if (!document_.remark.empty()) out_ << "comment " << remark_line(document_) << '\n';
+        out_ << "element vertex " << complex_.positions.size()
+             << "\nproperty double x\nproperty double y\nproperty double z\n";
         declare(vertex_columns);
         out_ << "element face " << complex_.polygon_count() << "\nproperty list " << (wide_lists_ ? "uint " : "uchar ")
              << index_type_ << " vertex_indices\n";

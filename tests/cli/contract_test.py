@@ -394,6 +394,43 @@ class Implicit(CommandTest):
         self.assertEqual(self.report(0, "implicit", "x^2+y^2+z^2+1")["verdict"], "empty")
         self.assertIn("EMPTY", self.expect(0, "implicit", "(x-9)^2+y^2+z^2-1"))
 
+    def test_clipped_surfaces_have_their_loops_certified(self):
+        options = ("--box", "-1", "-1", "-1", "1", "1", "1.2", "--clip")
+        report = self.report(0, "implicit", "z - 0.1", *options, "-o", "plane.ply", "--certificate", "plane.json")
+        self.assertEqual(report["components"], [{"genus": 0, "boundary_loops": 1}])
+        self.assertEqual(report["status"], {"type": "certified", "isotopy": "not claimed"})
+        self.assertEqual(report["proved"], ["components", "genera", "boundary_loops"])
+        text = self.expect(0, "check", "plane.ply", "--against", "z - 0.1", "--certificate", "plane.json")
+        self.assertIn("1 loop", text)
+        self.expect(1, "check", "plane.ply", "--against", "z - 0.3", "--certificate", "plane.json")
+        tangent = self.report(4, "implicit", self.SPHERE, "--box", "-2", "-2", "-2", "1", "2", "2", "--clip")
+        self.assertEqual(tangent["obstacles"][0]["reason"], "tangent_to_box")
+        self.assertAlmostEqual(tangent["obstacles"][0]["low"][0], 1.0, places=6)
+
+    def test_products_have_two_statuses(self):
+        spheres = "((x-1.0005)^2+y^2+z^2-1)*((x+1.0005)^2+y^2+z^2-1)"
+        report = self.report(0, "implicit", spheres, "--box", *["-2.5"] * 3, *["2.4"] * 3)
+        self.assertEqual(report["status"], {"type": "certified", "isotopy": "not claimed"})
+        self.assertEqual([c["genus"] for c in report["components"]], [0, 0])
+        self.assertEqual(report["proved"], ["components", "genera"])
+
+    def test_levels_in_texts_and_files(self):
+        self.write("shell.txt", "# radius 2\nr = x^2 + y^2 +\n  z^2; r  # no name\n")
+        self.write("named.txt", "r = x^2\nf = (r +\n y^2) + z^2 # last = named\n\n")
+        for function in ("x^2 + y^2 + z^2", "shell.txt", "named.txt"):
+            report = self.report(0, "implicit", function, "--level", "1.21", "-o", "ball.off")
+            self.assertEqual(report["verdict"], "certified")
+            upper = self.report(0, "info", "ball.off")["info"]["upper"]
+            self.assertAlmostEqual(upper[0], 1.1, delta=0.2)
+        self.assertEqual(self.report(0, "implicit", "shell.txt", "--level", "-1")["verdict"], "empty")
+        self.expect(2, "implicit", "shell.txt", "--level", "x")
+
+    def test_a_guess_is_labelled_and_exits_4(self):
+        cone = ("implicit", "x^2 + y^2 - z^2", "-o", "cone.off")
+        self.assertIn("NOT CERTIFIED", self.expect(4, *cone, "--uncertified"))
+        with open(self.path("cone.off"), encoding="utf-8") as file:
+            self.assertIn("NOT CERTIFIED", file.read(300))
+
     def test_errors_show_the_place(self):
         self.assertIn("  x + * y\n      ^", self.expect(3, "implicit", "x + * y"))
         self.assertIn("smooth_union", self.expect(3, "implicit", "min(x, y)"))
