@@ -84,6 +84,9 @@ ExitCode check_mesh_against_function(Session& session, const MeshDocument& docum
         session.flags().verbose ? check.reasons.size() : std::min<std::size_t>(5, check.reasons.size());
     session.say((refuted ? "REFUTED: not isotopic to the zero set" : "UNDECIDED: nothing is claimed") + where);
     for (std::size_t i = 0; i < shown; ++i) session.say("  " + check.reasons[i]);
+    if (!check.obstacles.empty())
+        session.say(std::string("  ") + name_of(check.obstacles.front().reason) + ": box " +
+                    show(check.obstacles.front().low) + " to " + show(check.obstacles.front().high));
     if (check.triangle_count > shown) session.say("  " + counted(check.triangle_count, "triangle") + " in all");
     if (!refuted && check.surface_known)
         session.say("  the zero set has " + list_of(check.surface_genera) +

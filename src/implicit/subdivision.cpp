@@ -250,7 +250,9 @@ private:
                 next_.erase(at);
             }
             loop.pop_back();
-            CERTA_ASSERT(loop.size() >= 3);
+            // Two squares of the leaf with the same two changes, at a point on one of its edges: the surface only dips
+            // in, and the leaves beyond share that edge of the mesh.
+            if (loop.size() < 3) continue;
             std::uint32_t middle = loop[0];
             if (loop.size() > 3) {
                 Point3 sum{};
@@ -261,7 +263,7 @@ private:
             for (std::size_t i = 0; i < loop.size(); ++i) {
                 const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
                 if (a != middle && b != middle)
-                    result_.mesh.triangles.push_back({VertexId{middle}, VertexId{a}, VertexId{b}});
+                    result_.mesh.triangles.push_back({VertexId{middle}, VertexId{b}, VertexId{a}});
             }
         }
     }

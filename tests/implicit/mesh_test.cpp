@@ -317,6 +317,7 @@ TEST(Engines, Agree) {
         const test::MeshTopology topology = test::measure(two.mesh);
         EXPECT_EQ(topology.flaw, "") << c.text;
         EXPECT_EQ(topology.genera, genera) << c.text;
+        EXPECT_GE(topology.signed_volume, 0) << c.text;
         std::vector<int> other;
         for (const ImplicitComponent& component : two.components) other.push_back(component.genus);
         std::sort(other.begin(), other.end());
