@@ -163,7 +163,7 @@ std::vector<Piece> pair_triangles(std::span<const Point3> ring) {
                     Piece quad{a[i], b[(j + 2) % 3], a[(i + 1) % 3], a[(i + 2) % 3]};
                     const double gain =
                         cutter.cost_of({a[0], a[1], a[2]}) + cutter.cost_of({b[0], b[1], b[2]}) - cutter.cost_of(quad);
-                    const bool has_straight_corner = cutter.cost_of(quad) > 0.5 * straight_cost;
+                    const bool has_straight_corner = cutter.cost_of(quad) > 0.9 * straight_cost;
                     if (gain > 0.0 && !has_straight_corner) pairs.push_back({gain, s, t, std::move(quad)});
                 }
     std::stable_sort(pairs.begin(), pairs.end(), [](const Pair& l, const Pair& r) { return l.gain > r.gain; });
