@@ -1,7 +1,7 @@
 // `certa remesh INPUT [-o OUT]`: polygons along lines of curvature.
 //
 // Plan: read, make one surface of triangles, take tagged edges from the file's segments and from --features, remesh,
-// report, write. Segments of the output are the sides that cover creases and boundary, with the field "curve".
+// report, write.
 #include <certa/curvature.h>
 #include <certa/remeshing.h>
 
