@@ -122,12 +122,13 @@ void add_check_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand(
         "check", "Verify what `conform` promises on any tetrahedral mesh, what `remesh` promises on any surface mesh");
     command->footer(
-        "Examples:\n  certa check part.mesh --against part.off\n"
-        "  certa check coarse.obj --against scan.ply --error 0.1%");
+        "Example:\n  certa check part.mesh --against part.off\n"
+        "  certa check coarse.obj --against scan.ply --error 0.1%\n"
+        "  certa check ball.off --against \"x^2+y^2+z^2-1\"");
     command->add_option("FILE", arguments->file.path, "tetrahedral or surface mesh (-: standard input)")->required();
     command
         ->add_option("--against", arguments->against.path,
-                     "the surface mesh or complex that it was made from or stands for; with --certificate the function")
+                     "the surface mesh or complex that it was made from or stands for; or a function")
         ->type_name("INPUT");
     command->add_option("--certificate", arguments->certificate, "of `implicit`: verify a triangle mesh by it")
         ->type_name("FILE");
