@@ -37,6 +37,17 @@ Json to_json(const SurfaceShape& s) {
             {"components", components}};
 }
 
+std::string describe(const SurfaceShape& s) {
+    std::int64_t genus = 0;
+    for (const ComponentShape& part : s.components) genus += part.genus;
+    return counted(s.vertices, "vertex", "vertices") + ", " + counted(s.polygons, "polygon") + " (" +
+           counted(s.quads, "quad") + ", " + counted(s.triangles, "triangle") + "), " +
+           counted(s.components.size(), "component") + ", genus " + std::to_string(genus) + ", " +
+           counted(s.boundary_loops, "boundary loop");
+}
+
+}  // namespace
+
 Json to_json(const SurfaceCheck& check) {
     Json violations = Json::array();
     for (const Violation& violation : check.violations)
@@ -64,14 +75,7 @@ Json to_json(const SurfaceCheck& check) {
             {"input_contacts", check.input_contacts}};
 }
 
-std::string describe(const SurfaceShape& s) {
-    std::int64_t genus = 0;
-    for (const ComponentShape& part : s.components) genus += part.genus;
-    return counted(s.vertices, "vertex", "vertices") + ", " + counted(s.polygons, "polygon") + " (" +
-           counted(s.quads, "quad") + ", " + counted(s.triangles, "triangle") + "), " +
-           counted(s.components.size(), "component") + ", genus " + std::to_string(genus) + ", " +
-           counted(s.boundary_loops, "boundary loop");
-}
+namespace {
 
 void say_findings(Session& session, const SurfaceCheck& check) {
     const SurfaceDistance& d = check.distance;

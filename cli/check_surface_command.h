@@ -14,5 +14,6 @@ ExitCode check_surface_mesh(Session& session, const MeshDocument& document, cons
 PolygonMesh polygons_of(const MeshDocument& document, const std::string& name);
 
 Json to_json(const SurfaceDistance& distance);
+Json to_json(const SurfaceCheck& check);
 
 }  // namespace certa::cli

@@ -1,14 +1,16 @@
 // `certa remesh INPUT [-o OUT]`: polygons along lines of curvature.
 //
 // Plan: read, make one surface of triangles, take tagged edges from the file's segments and from --features, remesh,
-// report, write.
+// report, check the result by what shares no code with the remesher, write.
 #include <certa/curvature.h>
 #include <certa/remeshing.h>
 
+#include <algorithm>
 #include <charconv>
 #include <fstream>
 #include <memory>
 
+#include "check_surface_command.h"
 #include "commands.h"
 #include "interrupt.h"
 #include "report.h"
@@ -23,7 +25,7 @@ struct RemeshArguments {
     RemeshOptions options;
     frontend::OutputOptions output_options;
     std::string features;
-    bool no_placement = false;
+    bool no_placement = false, no_verify = false;
 };
 
 /// Pairs of vertex numbers that count from 1, one pair a line; `#` starts a comment.
@@ -142,6 +144,36 @@ void say_result(Session& session, const RemeshStatistics& s) {
     for (const std::string& note : s.notes) session.warn(note);
 }
 
+/// Nothing that folds, meets itself or misses a crease is written. Subdivision smooths: no distance is promised then.
+void verify(Session& session, const RemeshArguments& arguments, const RemeshResult& result, const TriangleMesh& input) {
+    SurfaceCheckOptions options;
+    options.feature_angle_radians = arguments.options.feature_angle_radians;
+    options.features = arguments.options.features;
+    if (arguments.options.subdivide == 0) options.error = arguments.options.error;
+    PolygonMesh against;
+    against.positions = input.positions;
+    for (const Triangle& t : input.triangles) {
+        against.corners.insert(against.corners.end(), t.begin(), t.end());
+        against.offsets.push_back(static_cast<std::uint32_t>(against.corners.size()));
+    }
+    const SurfaceCheck check = session.timed("check", [&] {
+        const GracefulScope graceful;
+        return check_surface(result.mesh, against, options, session.control());
+    });
+    session.report()["check"] = to_json(check);
+    if (interrupt_flag() || check.outcome == Outcome::cancelled) return;
+    if (check.ok()) {
+        session.report()["proved"] = check.promises;
+        session.say("verified: " + joined(check.promises));
+        return;
+    }
+    for (std::size_t i = 0; i < std::min<std::size_t>(5, check.violations.size()); ++i)
+        session.say(check.violations[i].promise + ": " + check.violations[i].message);
+    throw Inability("remesh: the result fails its check (" + counted(check.violation_count, "violation") +
+                    ") and is not written; another --vertices, --error or --feature-angle may do, --no-verify writes "
+                    "it as it is");
+}
+
 ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     if (arguments.output.given()) session.require_writable(arguments.output);
     if (arguments.lines.given()) session.require_writable(arguments.lines);
@@ -157,6 +189,7 @@ ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
             arguments.options.features.push_back(edge);
     session.report()["options"] = to_json(frontend::remesh_options(), arguments.options, 0.0);
     session.report()["options"]["placement"] = arguments.options.placement;
+    session.report()["options"]["verify"] = !arguments.no_verify;
     const RemeshResult result = session.timed("remesh", [&] {
         const GracefulScope graceful;
         return remesh(surface.mesh, arguments.options, session.control());
@@ -173,6 +206,8 @@ ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     if (result.outcome != Outcome::done)
         throw Inability("remesh: what was asked for could not be had (" + std::string(name_of(result.outcome)) +
                         "); nothing is written");
+    if (!arguments.no_verify) verify(session, arguments, result, surface.mesh);
+    if (interrupt_flag()) return ExitCode::interrupted;
     if (arguments.output.given()) session.write(arguments.output, document_of(result), arguments.output_options);
     if (arguments.lines.given()) session.write(arguments.lines, line_document(result), arguments.output_options);
     return ExitCode::done;
@@ -206,6 +241,7 @@ void add_remesh_command(CLI::App& app, Action& action) {
     command->add_option("--lines", arguments->lines.path, "also write lines and umbilics (.vtu, .msh)")
         ->type_name("FILE");
     command->add_flag("--no-placement", arguments->no_placement, "leave vertices on the input surface");
+    command->add_flag("--no-verify", arguments->no_verify, "do not check the result before writing it");
     add_options(*command, frontend::output_options().first(2), arguments->output_options);
     add_common_flags(*command, arguments->common);
     command->callback([arguments, &action] {
