@@ -450,6 +450,21 @@ class Implicit(CommandTest):
         self.assertEqual(self.read("1.json"), self.read("2.json"))
 
 
+@unittest.skipIf(SANITIZED, "simplification takes a sanitized build minutes")
+class Chain(CommandTest):
+    def test_formula_to_certified_mesh_to_polygons_to_tetrahedra(self):
+        torus = "(x^2+y^2+z^2+0.84)^2 - 4*(x^2+y^2)"
+        self.assertEqual(self.report(0, "implicit", torus, "--error", "0.004", "-o", "a.off")["proved"], ["isotopic"])
+        report = self.report(0, "remesh", "a.off", "--vertices", "400", "-o", "b.obj")
+        self.assertIn("topology", report["proved"])
+        self.assertIn("embedded", report["proved"])
+        self.assertGreater(report["statistics"]["quads"], 0.8 * report["statistics"]["faces"])
+        self.assertIn("verified", self.expect(0, "check", "b.obj", "--against", "a.off"))
+        self.assertIn("delaunay", self.report(0, "conform", "b.obj", "--triangulate", "-o", "c.mesh")["proved"])
+        self.assertIn("verified", self.expect(0, "check", "c.mesh", "--against", "b.obj", "--triangulate"))
+        self.expect_no_strays("a.off", "b.obj", "c.mesh")
+
+
 class Info(CommandTest):
     def test_surface(self):
         info = self.report(0, "info", "cube.off")["info"]
