@@ -1,7 +1,7 @@
 // Our rows beside the table of the remeshers that we measure ourselves against: distance per vertex, share of quads,
 // time.
 //
-//   remesh_bench [--models FOLDER] [--write FOLDER] [--no-placement] [--verbose] [NAME...]
+//   remesh_bench --models FOLDER [--write FOLDER] [--no-placement] [--verbose] [NAME...]
 // Models: surfaces/{ellipsoid,torus,saddle}.off, cad/{fandisk.off,rocker-arm.obj}, scan/bunny00.off in FOLDER, at the
 // vertex counts of the table; NAME picks some. RMS and Hausdorff distance are over the diagonal, two-sided, from 30,000
 // samples on each surface and all vertices; the bound is the proved one, for every triangulation. Seconds are CPU of
@@ -67,7 +67,7 @@ std::string summary_of(const SurfaceCheck& check) {
 }
 
 struct Settings {
-    std::string models = "../shared/models", write;
+    std::string models, write;
     bool is_verbose = false, is_placed = true;
     std::vector<std::string> names;
 };
@@ -134,6 +134,10 @@ int main(int count, char** arguments) {
         } else {
             settings.names.push_back(arguments[i]);
         }
+    }
+    if (settings.models.empty()) {
+        std::fputs("remesh_bench: --models FOLDER is missing\n", stderr);
+        return 2;
     }
     std::printf("%-24s %5s %5s | %8s %8s | %8s %8s %8s | %5s\n", "model", "V", "quad%", "RMS", "target", "Hausd.",
                 "target", "bound", "CPU s");
