@@ -47,6 +47,21 @@ Interval second_order_rest(const std::array<Interval, 6>& hessian, const Center&
     return sum;
 }
 
+/// Narrows the slopes, and returns the value narrowed, by all forms that the Hessian on the box and the jet at its
+/// centre give. The Hessian must be a copy: both come from one workspace.
+Interval narrow_by_second_order(const std::array<Interval, 6>& hessian, const Jet<Interval>& middle,
+                                const Center& center, const Interval& value, std::array<Interval, 3>& slopes) {
+    for (int a = 0; a < 3; ++a) {
+        const std::array<Interval, 3> row{hessian[static_cast<std::size_t>(hessian_index[a][0])],
+                                          hessian[static_cast<std::size_t>(hessian_index[a][1])],
+                                          hessian[static_cast<std::size_t>(hessian_index[a][2])]};
+        Interval& slope = slopes[static_cast<std::size_t>(a)];
+        slope = interval::intersect(slope, first_order(middle.gradient[static_cast<std::size_t>(a)], row, center));
+    }
+    const Interval second = first_order(middle.value, middle.gradient, center) + second_order_rest(hessian, center);
+    return interval::intersect(value, interval::intersect(first_order(middle.value, slopes, center), second));
+}
+
 /// Notes the sign of f and the surest slope along the given axes; returns whether nothing is left to find.
 bool note(const Interval& value, const std::array<Interval, 3>& slopes, unsigned axes, Certainty& found) {
     if (found.sign == 0) found.sign = static_cast<std::int8_t>(interval::sign_of(value));
@@ -89,17 +104,9 @@ Certainty Field::certify(const Region& box, unsigned axes) {
         if (note(interval::intersect(value, first_order(at_center, slopes, center)), slopes, axes, found)) return found;
     }
     const std::array<Interval, 6> hessian = workspace_.evaluate<2>(box).hessian;
-    const Jet<Interval>& middle = workspace_.evaluate<1>(center.point);
-    for (int a = 0; a < 3; ++a) {
-        const std::array<Interval, 3> row{hessian[static_cast<std::size_t>(hessian_index[a][0])],
-                                          hessian[static_cast<std::size_t>(hessian_index[a][1])],
-                                          hessian[static_cast<std::size_t>(hessian_index[a][2])]};
-        Interval& slope = slopes[static_cast<std::size_t>(a)];
-        slope = interval::intersect(slope, first_order(middle.gradient[static_cast<std::size_t>(a)], row, center));
-    }
-    const Interval second = first_order(middle.value, middle.gradient, center) + second_order_rest(hessian, center);
-    note(interval::intersect(value, interval::intersect(first_order(middle.value, slopes, center), second)), slopes,
-         axes, found);
+    const Interval narrowed =
+        narrow_by_second_order(hessian, workspace_.evaluate<1>(center.point), center, value, slopes);
+    note(narrowed, slopes, axes, found);
     return found;
 }
 
@@ -122,16 +129,7 @@ Certainty Field::certify_variation(const Region& box) {
     if (decide()) return found;
     const Center center = center_of(box);
     const std::array<Interval, 6> hessian = workspace_.evaluate<2>(box).hessian;
-    const Jet<Interval>& middle = workspace_.evaluate<1>(center.point);
-    for (int a = 0; a < 3; ++a) {
-        const std::array<Interval, 3> row{hessian[static_cast<std::size_t>(hessian_index[a][0])],
-                                          hessian[static_cast<std::size_t>(hessian_index[a][1])],
-                                          hessian[static_cast<std::size_t>(hessian_index[a][2])]};
-        Interval& slope = slopes[static_cast<std::size_t>(a)];
-        slope = interval::intersect(slope, first_order(middle.gradient[static_cast<std::size_t>(a)], row, center));
-    }
-    const Interval second = first_order(middle.value, middle.gradient, center) + second_order_rest(hessian, center);
-    value = interval::intersect(value, interval::intersect(first_order(middle.value, slopes, center), second));
+    value = narrow_by_second_order(hessian, workspace_.evaluate<1>(center.point), center, value, slopes);
     decide();
     return found;
 }

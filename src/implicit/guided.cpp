@@ -157,22 +157,9 @@ private:
     }
 
     void add_critical_neighbours(std::uint32_t leaf, std::vector<std::uint32_t>& leaves) const {
-        const Cell& cell = tree_.cell(leaf);
-        const GridPoint high = tree_.high_of(cell);
-        for (unsigned k = 0; k < 64; ++k) {
-            // The unit cube in one of the eight octants around one of the eight corners.
-            GridPoint p{};
-            bool inside = true;
-            for (unsigned a = 0; a < 3; ++a) {
-                p[a] = (k >> a) & 1u ? high[a] : cell.low[a];
-                const bool below = ((k >> (3 + a)) & 1u) == 0;
-                inside = inside && p[a] != (below ? 0 : tree_.grid().side());
-                if (below) --p[a];
-            }
-            if (!inside) continue;
-            const std::uint32_t other = tree_.leaf_at(p);
+        tree_.visit_around_corners(tree_.cell(leaf), [&](std::uint32_t other) {
             if (tree_.cell(other).is_critical() && !tree_.touches_boundary(tree_.cell(other))) leaves.push_back(other);
-        }
+        });
     }
 
     const TriangleMesh& mesh_;

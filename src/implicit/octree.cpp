@@ -137,6 +137,26 @@ std::uint32_t Octree::across(const Cell& cell, int axis, int side) const {
     return id;
 }
 
+/// The points of the edge from a to b, without b.
+void Octree::append_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& ring) const {
+    CERTA_ASSERT(a != none && b != none);
+    const GridPoint &p = points_[a], &q = points_[b];
+    GridPoint middle;
+    Coordinate length = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Coordinate low = std::min(p[i], q[i]), high = std::max(p[i], q[i]);
+        middle[i] = low + (high - low) / 2;
+        length = std::max(length, high - low);
+    }
+    const std::uint32_t m = length < 2 ? none : points_.find(middle);
+    if (m == none || !is_corner(m)) {
+        ring.push_back(a);
+        return;
+    }
+    append_edge(a, m, ring);
+    append_edge(m, b, ring);
+}
+
 std::vector<std::uint32_t> Octree::leaves() const {
     std::vector<std::uint32_t> result;
     for (std::uint32_t id = 0; id < cells_.size(); ++id) {

@@ -1,5 +1,7 @@
 #pragma once
 // The octree and the points of its triangulation. Cells are split, never joined, so ids stay.
+#include <algorithm>
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -67,6 +69,15 @@ public:
     /// cell; none outside the box.
     std::uint32_t across(const Cell& cell, int axis, int side) const;
 
+    /// Calls visit(leaf) for the leaves in the eight octants around each corner of a leaf: some more than once, itself
+    /// too.
+    template <class Visit>
+    void visit_around_corners(const Cell& leaf, const Visit& visit) const;
+    /// Divides a square that faces `side` along `axis` until no centre is a corner, and calls visit(centre, ring) for
+    /// each part: the points on its rim, counter-clockwise seen from outside. Every one of them must have an id.
+    template <class Visit>
+    void visit_squares(const GridPoint& low, int axis, int side, Coordinate size, const Visit& visit) const;
+
     /// All points that were ever given an id: corners of leaves, and centres that the triangulation uses.
     PointMap& points() { return points_; }
     const PointMap& points() const { return points_; }
@@ -86,11 +97,55 @@ public:
 
 private:
     void add_corners(const Cell& cell);
+    void append_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& ring) const;
     Grid grid_;
     bool clipped_;
     std::vector<Cell> cells_;
     PointMap points_;
     std::vector<char> is_corner_;
 };
+
+template <class Visit>
+void Octree::visit_around_corners(const Cell& leaf, const Visit& visit) const {
+    const GridPoint high = high_of(leaf);
+    for (unsigned k = 0; k < 64; ++k) {
+        // The unit cube in one of the eight octants around one of the eight corners.
+        GridPoint p{};
+        bool inside = true;
+        for (unsigned a = 0; a < 3; ++a) {
+            p[a] = (k >> a) & 1u ? high[a] : leaf.low[a];
+            const bool below = ((k >> (3 + a)) & 1u) == 0;
+            inside = inside && p[a] != (below ? 0 : grid_.side());
+            if (below) --p[a];
+        }
+        if (inside) visit(leaf_at(p));
+    }
+}
+
+template <class Visit>
+void Octree::visit_squares(const GridPoint& low, int axis, int side, Coordinate size, const Visit& visit) const {
+    const auto u = static_cast<std::size_t>((axis + 1) % 3), v = static_cast<std::size_t>((axis + 2) % 3);
+    GridPoint center = low;
+    center[u] += size / 2;
+    center[v] += size / 2;
+    if (is_corner(center)) {
+        for (unsigned q = 0; q < 4; ++q) {
+            GridPoint corner = low;
+            corner[u] += (q & 1u) * (size / 2);
+            corner[v] += (q >> 1) * (size / 2);
+            visit_squares(corner, axis, side, size / 2, visit);
+        }
+        return;
+    }
+    std::array<GridPoint, 4> corners{low, low, low, low};  // counter-clockwise around +axis
+    corners[1][u] += size;
+    corners[2][u] += size;
+    corners[2][v] += size;
+    corners[3][v] += size;
+    if (side == 0) std::reverse(corners.begin(), corners.end());
+    std::vector<std::uint32_t> ring;
+    for (std::size_t i = 0; i < 4; ++i) append_edge(points_.find(corners[i]), points_.find(corners[(i + 1) % 4]), ring);
+    visit(center, ring);
+}
 
 }  // namespace certa::implicit

@@ -131,20 +131,9 @@ private:
     }
     void add_large_neighbours(std::uint32_t leaf, std::vector<std::uint32_t>& large) const {
         const Cell& cell = tree_.cell(leaf);
-        const GridPoint high = tree_.high_of(cell);
-        for (unsigned k = 0; k < 64; ++k) {
-            GridPoint p{};
-            bool inside = true;
-            for (unsigned a = 0; a < 3; ++a) {
-                p[a] = (k >> a) & 1u ? high[a] : cell.low[a];
-                const bool below = ((k >> (3 + a)) & 1u) == 0;
-                inside = inside && p[a] != (below ? 0 : tree_.grid().side());
-                if (below) --p[a];
-            }
-            if (!inside) continue;
-            const std::uint32_t other = tree_.leaf_at(p);
+        tree_.visit_around_corners(cell, [&](std::uint32_t other) {
             if (tree_.cell(other).known.sign == 0 && tree_.cell(other).depth + 1 < cell.depth) large.push_back(other);
-        }
+        });
     }
 
     // ---- The mesh ---------------------------------------------------------------------------------------------------
@@ -170,35 +159,14 @@ private:
             for (int face = 0; face < 6; ++face) {
                 GridPoint low = cell.low;
                 if (face % 2 == 1) low[static_cast<std::size_t>(face / 2)] += tree_.size_of(cell);
-                trace_square(low, face / 2, face % 2, tree_.size_of(cell));
+                tree_.visit_squares(low, face / 2, face % 2, tree_.size_of(cell),
+                                    [&](const GridPoint&, const auto& ring) { trace(ring); });
             }
             fill_loops();
         }
     }
 
-    void trace_square(const GridPoint& low, int axis, int side, Coordinate size) {
-        const auto u = static_cast<std::size_t>((axis + 1) % 3), v = static_cast<std::size_t>((axis + 2) % 3);
-        GridPoint center = low;
-        center[u] += size / 2;
-        center[v] += size / 2;
-        if (tree_.is_corner(center)) {
-            for (unsigned q = 0; q < 4; ++q) {
-                GridPoint corner = low;
-                corner[u] += (q & 1u) * (size / 2);
-                corner[v] += (q >> 1) * (size / 2);
-                trace_square(corner, axis, side, size / 2);
-            }
-            return;
-        }
-        std::array<GridPoint, 4> corners{low, low, low, low};
-        corners[1][u] += size;
-        corners[2][u] += size;
-        corners[2][v] += size;
-        corners[3][v] += size;
-        if (side == 0) std::reverse(corners.begin(), corners.end());
-        std::vector<std::uint32_t> ring;
-        for (std::size_t i = 0; i < 4; ++i)
-            append_edge(tree_.points().find(corners[i]), tree_.points().find(corners[(i + 1) % 4]), ring);
+    void trace(const std::vector<std::uint32_t>& ring) {
         const std::size_t count = ring.size();
         for (std::size_t q = 0; q < count; ++q) {
             if (sign_of(ring[q]) < 0 || sign_of(ring[(q + 1) % count]) > 0) continue;
@@ -206,25 +174,6 @@ private:
             while (sign_of(ring[(r + 1) % count]) < 0) r = (r + 1) % count;
             next_[vertex(ring[r], ring[(r + 1) % count])] = vertex(ring[q], ring[(q + 1) % count]);
         }
-    }
-
-    void append_edge(std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& ring) const {
-        CERTA_ASSERT(a != none && b != none);
-        const GridPoint &p = tree_.points()[a], &q = tree_.points()[b];
-        GridPoint middle;
-        Coordinate length = 0;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const Coordinate low = std::min(p[i], q[i]), high = std::max(p[i], q[i]);
-            middle[i] = low + (high - low) / 2;
-            length = std::max(length, high - low);
-        }
-        const std::uint32_t m = length < 2 ? none : tree_.points().find(middle);
-        if (m == none || !tree_.is_corner(m)) {
-            ring.push_back(a);
-            return;
-        }
-        append_edge(a, m, ring);
-        append_edge(m, b, ring);
     }
 
     std::uint32_t vertex(std::uint32_t a, std::uint32_t b) {

@@ -126,58 +126,12 @@ void Triangulation::build_leaf(Octree& tree, std::uint32_t leaf) {
     for (int face = 0; face < 6; ++face) {
         GridPoint low = cell.low;
         if (face % 2 == 1) low[static_cast<std::size_t>(face / 2)] += size;
-        build_square(tree, low, face / 2, face % 2, size, apex);
+        tree.visit_squares(low, face / 2, face % 2, size, [&](const GridPoint& center, const auto& ring) {
+            const std::uint32_t middle = tree.points().insert(center);
+            for (std::size_t i = 0; i < ring.size(); ++i)
+                tetrahedra_.push_back({apex, middle, ring[i], ring[(i + 1) % ring.size()]});
+        });
     }
-}
-
-void Triangulation::build_square(Octree& tree, const GridPoint& low, int axis, int side, Coordinate size,
-                                 std::uint32_t apex) {
-    const auto u = static_cast<std::size_t>((axis + 1) % 3), v = static_cast<std::size_t>((axis + 2) % 3);
-    GridPoint center = low;
-    center[u] += size / 2;
-    center[v] += size / 2;
-    if (tree.is_corner(center)) {
-        for (unsigned q = 0; q < 4; ++q) {
-            GridPoint corner = low;
-            corner[u] += (q & 1u) * (size / 2);
-            corner[v] += (q >> 1) * (size / 2);
-            build_square(tree, corner, axis, side, size / 2, apex);
-        }
-        return;
-    }
-    const std::uint32_t middle = tree.points().insert(center);
-    std::array<GridPoint, 4> corners{low, low, low, low};  // counter-clockwise around +axis
-    corners[1][u] += size;
-    corners[2][u] += size;
-    corners[2][v] += size;
-    corners[3][v] += size;
-    if (side == 0) std::reverse(corners.begin(), corners.end());
-    std::vector<std::uint32_t> ring;
-    for (std::size_t i = 0; i < 4; ++i)
-        append_edge(tree, tree.points().find(corners[i]), tree.points().find(corners[(i + 1) % 4]), ring);
-    for (std::size_t i = 0; i < ring.size(); ++i)
-        tetrahedra_.push_back({apex, middle, ring[i], ring[(i + 1) % ring.size()]});
-}
-
-/// The points of the edge from a to b, without b.
-void Triangulation::append_edge(const Octree& tree, std::uint32_t a, std::uint32_t b,
-                                std::vector<std::uint32_t>& ring) const {
-    CERTA_ASSERT(a != none && b != none);
-    const GridPoint &p = tree.points()[a], &q = tree.points()[b];
-    GridPoint middle;
-    Coordinate length = 0;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const Coordinate low = std::min(p[i], q[i]), high = std::max(p[i], q[i]);
-        middle[i] = low + (high - low) / 2;
-        length = std::max(length, high - low);
-    }
-    const std::uint32_t m = length < 2 ? none : tree.points().find(middle);
-    if (m == none || !tree.is_corner(m)) {
-        ring.push_back(a);
-        return;
-    }
-    append_edge(tree, a, m, ring);
-    append_edge(tree, m, b, ring);
 }
 
 void Triangulation::settle_signs(const Octree& tree, Field& field, std::vector<PointSign>& signs) {

@@ -59,8 +59,6 @@ private:
     void inherit_active(const Octree& tree, const Triangulation& previous, std::span<const std::uint32_t> split);
     void build_rest(Octree& tree, Field& field, std::vector<PointSign>& signs, const Triangulation* previous);
     void build_leaf(Octree& tree, std::uint32_t leaf);
-    void build_square(Octree& tree, const GridPoint& low, int axis, int side, Coordinate size, std::uint32_t apex);
-    void append_edge(const Octree& tree, std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& ring) const;
     void settle_signs(const Octree& tree, Field& field, std::vector<PointSign>& signs);
     void settle_sign(const Octree& tree, Field& field, int proved, std::uint32_t point, PointSign& known);
     void note_changes();
