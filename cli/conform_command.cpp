@@ -135,6 +135,18 @@ PiecewiseLinearComplex repaired(Session& session, const ConformArguments& argume
     return std::move(result.complex);
 }
 
+/// Protecting balls are no promise: only formats with named arrays carry their radii.
+void write_mesh(Session& session, const ConformArguments& arguments, const ConformResult& result,
+                const PiecewiseLinearComplex& complex) {
+    const FileArgument& output = arguments.output;
+    const Format format = output.format ? *output.format : *format_of(output.path);
+    MeshDocument document =
+        make_document(result.mesh, complex, arguments.output_options.reference, result.region_attributes);
+    if (!result.ball_radii.empty() && (format == Format::vtu || format == Format::msh))
+        document.fields.push_back({"ball_radius", Location::vertices, 1, result.ball_radii});
+    session.write(output, document, arguments.output_options);
+}
+
 ExitCode run_conform(Session& session, const ConformArguments& arguments) {
     if (arguments.output.given()) require_volume_format(session, arguments.output);
     const MeshDocument input = session.read(arguments.input, "input");
@@ -161,10 +173,7 @@ ExitCode run_conform(Session& session, const ConformArguments& arguments) {
     say_mesh(session, result);
     if (!arguments.no_verify) verify(session, arguments, result, complex);
     if (interrupt_flag()) return ExitCode::interrupted;
-    if (arguments.output.given())
-        session.write(arguments.output,
-                      make_document(result.mesh, complex, arguments.output_options.reference, result.region_attributes),
-                      arguments.output_options);
+    if (arguments.output.given()) write_mesh(session, arguments, result, complex);
     return ExitCode::done;
 }
 

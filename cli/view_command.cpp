@@ -13,6 +13,7 @@
 #include "interrupt.h"
 #include "report.h"
 #include "session.h"
+#include "view_boxes.h"
 
 namespace certa::cli {
 namespace {
@@ -57,8 +58,13 @@ std::vector<ViewModel> read_models(Session& session, const ViewArguments& argume
     std::vector<ViewModel> models;
     Json inputs = Json::array();
     for (std::size_t i = 0; i < names.size(); ++i) {
-        models.push_back({names[i], session.read({arguments.inputs[i], arguments.format.format}, "input")});
-        inputs.push_back(session.report()["input"]);
+        const bool is_boxes = holds_boxes(arguments.inputs[i]);
+        models.push_back({names[i],
+                          is_boxes ? session.timed("read", [&] { return read_boxes(arguments.inputs[i]); })
+                                   : session.read({arguments.inputs[i], arguments.format.format}, "input"),
+                          is_boxes});
+        inputs.push_back(is_boxes ? Json{{"path", arguments.inputs[i]}, {"format", "json"}}
+                                  : session.report()["input"]);
         const MeshDocument& document = models.back().document;
         std::string line = names[i] + ": " + counted(document.complex.positions.size(), "vertex", "vertices");
         if (document.complex.polygon_count() > 0) line += ", " + counted(document.complex.polygon_count(), "polygon");
@@ -106,8 +112,15 @@ ExitCode run_view(Session& session, const ViewArguments& arguments) {
 void add_view_command(CLI::App& app, Action& action) {
     auto arguments = std::make_shared<ViewArguments>();
     CLI::App* command = app.add_subcommand("view", "Write a page that shows meshes in a browser");
-    command->footer("Example:\n  certa view part.off part.mesh -o page.html");
-    command->add_option("FILE", arguments->inputs, "meshes or complexes, each with its fields (-: standard input)")
+    command->footer(
+        "Examples:\n  certa view part.off part.mesh -o page.html\n"
+        "  certa view scan.ply few.obj lines.vtu -o page.html     lines of curvature, from remesh --lines, on the "
+        "scan\n"
+        "  certa view torus.off torus.json -o page.html           critical clusters of a certificate, in the surface");
+    command
+        ->add_option("FILE", arguments->inputs,
+                     "meshes or complexes with their fields, certificates and reports of `certa implicit` "
+                     "(.json); -: standard input")
         ->required();
     command->add_option("-o,--output", arguments->output, "page to write, .html (-: standard output)")
         ->type_name("PAGE");

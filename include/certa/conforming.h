@@ -48,6 +48,7 @@ struct ConformResult {
     TetMesh mesh;                ///< input points first, unchanged and in order, then Steiner points
     std::vector<Edge> segments;  ///< all segments: the given ones in order, then the remaining sides of facets
     std::vector<double> region_attributes;  ///< per region, from its seed, else 0
+    std::vector<double> ball_radii;  ///< per vertex: of the protecting ball around it, else 0; empty without balls
     std::vector<Defect> warnings, repairs;
     std::vector<Defect> obstacles;  ///< unless done: what stopped the run, and where
     ConformStatistics statistics;

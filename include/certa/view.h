@@ -12,6 +12,8 @@ namespace certa {
 struct ViewModel {
     std::string name;
     MeshDocument document;
+    bool is_overlay =
+        false;  ///< boxes and the like: shown inside the surface of another model of the page, seen through
 };
 
 /// The axis that points upwards in the first view.

@@ -377,10 +377,17 @@ private:
         if (result_.outcome == Outcome::done) {
             control_.report("label", 0.0);
             clock_.run("label", [&] { emit_mesh(attempt->mesh, attempt->recovery, input_, options_, result_); });
+            if (attempt->area) label_balls(*attempt->area);
         } else if (result_.outcome != Outcome::cancelled) {
             report_obstructions(attempt->end);
             emit_partial(attempt->mesh, attempt->recovery, result_);
         }
+    }
+
+    void label_balls(const ProtectedArea& area) {
+        result_.ball_radii.assign(result_.mesh.positions.size(), 0.0);
+        for (std::size_t i = 0; i < area.balls.size(); ++i)
+            result_.ball_radii[area.ball_centers[i]] = area.balls[i].radius;
     }
 
     void report_obstructions(const RecoveryResult& end) {

@@ -14,6 +14,7 @@
 
 #include "core/vector3.h"
 #include "page/json_text.h"
+#include "page/shield_edges.h"
 
 namespace certa::page {
 namespace {
@@ -260,7 +261,20 @@ std::optional<std::uint64_t> label_count(const MeshDocument& document, std::stri
     return std::nullopt;
 }
 
-std::string describe_counts(const MeshDocument& document) {
+/// Number of vertices whose entry in a field is not 0; nothing without the field.
+std::optional<std::uint64_t> marked_count(const MeshDocument& document, std::string_view name) {
+    for (const Field& field : document.fields)
+        if (field.name == name && field.location == Location::vertices && field.components == 1)
+            return std::visit(
+                [](const auto& values) {
+                    const auto zeros = std::count(values.begin(), values.end(), 0);
+                    return values.size() - static_cast<std::size_t>(zeros);
+                },
+                field.values);
+    return std::nullopt;
+}
+
+std::string describe_counts(const MeshDocument& document, std::size_t shields) {
     const PiecewiseLinearComplex& complex = document.complex;
     std::uint64_t triangles = 0;
     for (std::size_t p = 0; p < complex.polygon_count(); ++p)
@@ -277,12 +291,15 @@ std::string describe_counts(const MeshDocument& document) {
     auto regions = label_count(document, "region", Location::tetrahedra);
     if (!regions) regions = label_count(document, "marker", Location::tetrahedra);
     if (regions) counts.set("regions", json_number(*regions));
-    for (const Field& field : document.fields) {
-        const Integers* kinds = std::get_if<Integers>(&field.values);
-        if (kinds == nullptr || field.name != "source_kind" || field.location != Location::vertices) continue;
-        const auto added = std::count_if(kinds->begin(), kinds->end(), [](std::int64_t kind) { return kind != 0; });
-        counts.set("added", json_number(static_cast<std::uint64_t>(added)));
-    }
+    const auto set_if = [&](const char* name, std::optional<std::uint64_t> count) {
+        if (count) counts.set(name, json_number(*count));
+    };
+    set_if("added", marked_count(document, "source_kind"));
+    set_if("balls", marked_count(document, "ball_radius"));
+    if (shields > 0) counts.set("shields", json_number(std::uint64_t{shields}));
+    set_if("umbilics", marked_count(document, "umbilic_half_turns"));
+    set_if("boxes", label_count(document, "box", Location::polygons));
+    set_if("clusters", label_count(document, "cluster", Location::polygons));
     return counts.text();
 }
 
@@ -303,7 +320,9 @@ std::string describe_model(const ViewModel& model, PageArrays& arrays) {
     JsonObject entry;
     entry.set("name", json_string(model.name));
     if (!document.remark.empty()) entry.set("remark", json_string(document.remark));
-    entry.set("counts", describe_counts(document));
+    if (model.is_overlay) entry.set("overlay", "true");
+    const std::vector<std::uint32_t> shields = find_shield_edges(document);
+    entry.set("counts", describe_counts(document, shields.size() / 2));
     entry.set("lower", json_point(frame.lower)).set("upper", json_point(frame.upper));
     entry.set("origin", json_point(frame.origin)).set("scale", json_number(frame.scale));
     const std::vector<float> positions = positions_in(frame, complex.positions);
@@ -313,6 +332,7 @@ std::string describe_model(const ViewModel& model, PageArrays& arrays) {
         const auto segments = flattened(complex.segments);
         entry.set("segments", arrays.add(std::span<const std::uint32_t>(segments)));
     }
+    if (!shields.empty()) entry.set("shields", arrays.add(std::span<const std::uint32_t>(shields)));
     if (!document.tetrahedra.empty()) {
         const auto tetrahedra = flattened(document.tetrahedra);
         entry.set("tetrahedra", arrays.add(std::span<const std::uint32_t>(tetrahedra)));

@@ -318,7 +318,7 @@ std::vector<Family> make_small_families() {
         const std::string at = " " + std::to_string(angle);
         all.push_back({"fan" + at, [=](std::uint64_t s) { return make_fan(small(s, 2, 14), width, s); }});
         all.push_back({"book" + at, [=](std::uint64_t s) { return make_book(small(s, 2, 14), 0.9 * width); }});
-        all.push_back({"wedge" + at, [=](std::uint64_t s) { return make_wedge(0.45 * width / (1 + s), s % 2 == 0); }});
+        all.push_back({"wedge" + at, [=](std::uint64_t s) { return make_wedge(0.45 * width / (1 + s % 50), s % 2 == 0); }});
         if (width < 2) {
             all.push_back({"cone" + at, [=](std::uint64_t s) { return make_cone(small(s, 2, 9), width, s); }, true});
         }

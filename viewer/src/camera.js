@@ -14,6 +14,7 @@ export class Turntable {
     this.up = 'z';
     this.inset = [0, 0];  // CSS pixels at the right and at the bottom that the controls cover
     this.radius = 1;
+    this.centre = [0, 0, 0];  // what the target is measured from
     this.reset();
     this.pointers = new Map();
     element.addEventListener('pointerdown', (event) => this.down(event));
@@ -58,7 +59,7 @@ export class Turntable {
   apply(width, height) {
     this.camera.aspect = width / height;
     const { back, right, up } = this.basis;
-    const length = this.length, target = this.target.map((x) => x * this.radius);
+    const length = this.length, target = this.target.map((x, i) => this.centre[i] + x * this.radius);
     const matrix = new Matrix4().makeBasis(new Vector3(...right), new Vector3(...up), new Vector3(...back));
     matrix.setPosition(...target.map((x, i) => x + length * back[i]));
     this.camera.matrixAutoUpdate = false;

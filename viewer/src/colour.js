@@ -74,3 +74,29 @@ export function labelColour(i) {
 export function css([r, g, b]) {
   return `rgb(${r},${g},${b})`;
 }
+
+/// What the numbers of some labels mean, and which of the theme's colours they have.
+const MEANINGS = {
+  source_kind: { names: { 0: 'input', 1: 'on a segment', 2: 'in a facet' } },
+  family: { names: { 1: 'lines of k_min', 2: 'lines of k_max' }, colours: { 1: 0, 2: 1 } },
+  umbilic_half_turns: { names: { 1: 'wedge umbilic', '-1': 'trisector umbilic' }, colours: { 1: 3, '-1': 4 } },
+  sign: { names: { '-1': 'f < 0', 1: 'f > 0' }, colours: { '-1': 0, 1: 1 } },
+  reason: {
+    names: {
+      1: 'singular', 2: 'meets the box', 3: 'tangent to the box', 4: 'undefined', 5: 'precision', 6: 'budget', 7: 'cancelled',
+    },
+  },
+};
+
+export function labelName(field, value) {
+  const known = MEANINGS[field.name]?.names[value];
+  if (known) return known;
+  if (field.name === 'umbilic_half_turns') return `index ${value}/2`.replace('-', '−');
+  return value === 0 && ['facet', 'segment', 'marker'].includes(field.name) ? 'none' : null;
+}
+
+/// The colours of a label's categories; `strong` are those of the theme that stand out from any surface.
+export function coloursOf(field, strong) {
+  const chosen = MEANINGS[field.name]?.colours ?? {};
+  return Array.from(field.categories, (value, i) => strong[chosen[value]] ?? labelColour(i));
+}

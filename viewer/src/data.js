@@ -43,9 +43,9 @@ class Field {
   get isVector() {
     return this.components === 3;
   }
-  /// The label whose vertices are not shown as points: those of the input say nothing.
+  /// The label whose vertices are not shown as points: those of the input, or of no umbilic, say nothing.
   get hides() {
-    return this.name === 'source_kind' && this.location === 'vertices' ? 0 : null;
+    return ['source_kind', 'umbilic_half_turns'].includes(this.name) && this.location === 'vertices' ? 0 : null;
   }
   /// Distinct values in ascending order, for labels.
   get categories() {
@@ -123,6 +123,19 @@ export class Model {
   get radius() {
     const [hx, hy, hz] = this.halfExtents;
     return Math.hypot(hx, hy, hz) || 1;
+  }
+  /// Boxes and lines say more on the surface that they belong to than alone.
+  get wantsGround() {
+    return this.entry.overlay === true || !(this.hasSolid || this.hasSurface);
+  }
+  /// Takes a place of another model to this one's: p -> shift + factor p.
+  mapFrom(other) {
+    const { origin, scale } = this.entry;
+    return { shift: other.entry.origin.map((x, i) => (x - origin[i]) / scale), factor: other.entry.scale / scale };
+  }
+  /// Vertices with a protecting ball.
+  get balls() {
+    return this.fields.find((field) => field.name === 'ball_radius' && field.location === 'vertices' && field.components === 1 && field.max > 0) ?? null;
   }
   get halfExtents() {
     const { lower, upper, scale } = this.entry;

@@ -4,18 +4,18 @@ import { HOME, Turntable } from './camera.js';
 import { MAPS } from './colour.js';
 import { readPage } from './data.js';
 import { element, Panel, renderLegend, renderProbe, textOf } from './panel.js';
-import { Stage } from './scene.js';
+import { frameOf, Stage } from './scene.js';
 import { hashOf, stateOf } from './state.js';
 
 const MANY_TRIANGLES = 200000;
 const THEMES = {
   light: {
     surface: [196, 208, 220], inside: [232, 190, 132], edge: [38, 52, 68], sharp: [40, 54, 70], segment: [26, 44, 66], point: [214, 92, 54], missing: [205, 208, 212],
-    directions: [[24, 78, 148], [176, 42, 58], [40, 110, 70]],
+    directions: [[24, 78, 148], [176, 42, 58], [40, 110, 70], [232, 132, 20], [120, 56, 160]], ball: [42, 120, 150], shield: [206, 62, 30],
   },
   dark: {
     surface: [138, 158, 178], inside: [206, 154, 90], edge: [12, 17, 23], sharp: [14, 19, 25], segment: [226, 233, 240], point: [255, 150, 100], missing: [84, 90, 97],
-    directions: [[150, 205, 255], [255, 158, 150], [160, 226, 170]],
+    directions: [[140, 200, 255], [255, 140, 132], [160, 226, 170], [255, 196, 92], [216, 160, 255]], ball: [130, 200, 224], shield: [255, 138, 96],
   },
 };
 
@@ -75,19 +75,35 @@ class App {
     const automaticRange = state.range === null || !field;
     const range = automaticRange ? this.rangeOf(field) : state.range;
     const directions = this.directionSlots(model);
+    const ground = this.groundOf(model);
+    const marks = field?.isLabel && field.location === 'vertices' ? field : model.field('umbilic_half_turns') ?? null;
     return {
+      ground, marks, groundAs: state.groundAs ?? (model.hasSurface ? 'glass' : 'solid'), balls: model.balls !== null && state.balls !== false,
       directions, model, solid, field, range, automaticRange, up,
       clip: state.clip ?? (solid ? { axis: up === 'z' ? '-y' : 'z', at: 0.5 } : false),
       map: MAPS[state.map] ? state.map : field && this.crossesZero(field) ? 'tide' : 'dusk',
-      edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES || directions.some(Boolean) ? 'sharp' : 'all'),
+      edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES || directions.some(Boolean) || (ground && !model.hasSurface) ? 'sharp' : 'all'),
       // Where nearly every edge is a segment, drawing them says nothing.
       segments: state.segments ?? model.counts.segments < 0.5 * (model.counts.polygons || Infinity),
-      points: state.points ?? (model.isPoint || (field?.isLabel === true && field.location === 'vertices')),
+      points: state.points ?? (model.isPoint || marks !== null),
       density: state.density ?? 0.5,
       theme: state.theme ?? (this.systemTheme.matches ? 'dark' : 'light'),
       panel: state.panel ?? innerWidth > 640,
       bare: state.bare ?? false,
     };
+  }
+
+  /// The file whose surface is drawn under the model: the state's, else, for lines and boxes, the first one that has a surface.
+  groundOf(model) {
+    const { models } = this.page;
+    const fits = (one) => one && one !== model && !one.wantsGround;
+    if (this.state.ground !== null) return fits(models[this.state.ground - 1]) ? models[this.state.ground - 1] : null;
+    return model.wantsGround ? models.find((one) => fits(one) && this.meet(model, one)) ?? null : null;
+  }
+
+  /// Whether the boxes of two models have a point in common.
+  meet({ entry: a }, { entry: b }) {
+    return [0, 1, 2].every((i) => a.lower[i] <= b.upper[i] && b.lower[i] <= a.upper[i]);
   }
 
   /// Three places, each with its colour: the directions of the state, dir_min and dir_max always in the same.
@@ -108,7 +124,9 @@ class App {
     if (this.state.colour === 'plain') return null;
     const named = this.state.colour ? model.field(this.state.colour) : null;
     if (named?.components === 1) return named;
-    const candidates = model.fields.filter((one) => one.components === 1 && !one.isLabel && one.location === 'vertices');
+    const lines = model.field('family') ?? (model.entry.overlay ? model.field('cluster') ?? model.field('reason') : null);
+    if (lines) return lines;
+    const candidates = model.fields.filter((one) => one.components === 1 && !one.isLabel && one.location === 'vertices' && one.name !== 'ball_radius');
     const numbers = candidates.find((one) => one.name === 'mean') ?? candidates[0];
     const labels = model.fields.filter((one) => one.isLabel && one.location === 'tetrahedra');
     const regions = model.counts.regions > 1 ? labels.find((one) => one.name === 'region') ?? labels.find((one) => one.name === 'marker') : null;
@@ -153,12 +171,14 @@ class App {
     for (const id of ['head', 'panel']) byId(id).hidden = choice.bare;
     document.title = this.page.models.length > 1 ? `${choice.model.name} · ${this.page.title}` : this.page.title;
     this.view.up = choice.up;
-    this.view.radius = choice.model.radius;
+    const frame = frameOf(choice.model, choice.ground);
+    this.view.radius = frame.radius;
+    this.view.centre = frame.centre;
     const covers = choice.panel && !choice.bare;
     this.view.inset = innerWidth > 640 ? [covers ? 264 : 0, 0] : [0, covers ? 0.55 * innerHeight : 0];
     this.stage.setTheme(this.theme);
     const relevant = (c) => c && [c.model.index, c.solid, c.field?.key, c.map, JSON.stringify(c.clip), c.segments, c.points,
-      c.directions.map((one) => one?.key).join(), c.density].join('|');
+      c.directions.map((one) => one?.key).join(), c.density, c.ground?.index, c.groundAs, c.balls, c.theme].join('|');
     if (relevant(before) !== relevant(choice)) this.stage.update(choice);
     if (choice.field && !choice.field.isLabel) this.stage.setRange(choice.field, choice.range);
     this.renderFiles();

@@ -1,6 +1,6 @@
 // The controls, the legend and the note about a clicked element, as plain elements of the page. Everything is made anew
 // when the state changes, except a slider that is being moved.
-import { css, gradientOf, labelColour, MAPS } from './colour.js';
+import { coloursOf, css, gradientOf, labelName, MAPS } from './colour.js';
 
 /// element('button', { class: 'x', onclick }, children...)
 export function element(tag, attributes = {}, ...children) {
@@ -48,7 +48,8 @@ function section(title, ...children) {
 function countRows(model) {
   const { counts } = model;
   const rows = [['vertices', counts.vertices], ['added', counts.added], [counts.triangles === counts.polygons ? 'triangles' : 'polygons', counts.polygons],
-    ['facets', counts.facets], ['segments', counts.segments], ['tetrahedra', counts.tetrahedra], ['regions', counts.regions > 1 ? counts.regions : 0]];
+    ['facets', counts.facets], ['segments', counts.segments], ['tetrahedra', counts.tetrahedra], ['regions', counts.regions > 1 ? counts.regions : 0],
+    ['umbilics', counts.umbilics], ['protecting balls', counts.balls], ['shield edges', counts.shields], ['boxes', counts.boxes], ['clusters', counts.clusters]];
   return rows.filter(([, count]) => count > 0).flatMap(([name, count]) => [element('dt', {}, name), element('dd', {}, grouped(count))]);
 }
 
@@ -102,12 +103,25 @@ export class Panel {
       model.hasSolid && model.hasSurface
         ? element('div', { class: 'row' }, pick([['solid', 'tetrahedra'], ['facets', 'facets']], choice.solid ? 'solid' : 'facets', (show) => set({ show }), 'What is shown'))
         : null,
-      model.hasSolid || model.hasSurface
+      model.hasSolid || model.hasSurface || choice.ground
         ? element('div', { class: 'row' }, 'Edges', pick([['none', 'none'], ['sharp', 'sharp'], ['all', 'all']], choice.edges, (edges) => set({ edges }), 'Edges'))
         : null,
       model.counts.segments > 0 ? check('Segments', choice.segments, (segments) => set({ segments })) : null,
+      model.balls ? check('Protecting balls', choice.balls, (balls) => set({ balls })) : null,
       check('Vertices', choice.points, (points) => set({ points })),
+      ...this.groundRows(choice, set),
       element('div', { class: 'row' }, 'Upwards', pick([['y', 'y'], ['z', 'z']], choice.up, (up) => set({ up }), 'Upwards')));
+  }
+
+  /// Which other file is drawn under this one, and how.
+  groundRows({ model, ground, groundAs }, set) {
+    const others = this.app.page.models.filter((one) => one !== model && !one.wantsGround);
+    if (others.length === 0) return [];
+    const list = element('select', { 'aria-label': 'Surface underneath', onchange: (event) => set({ ground: Number(event.target.value) }) },
+      element('option', { value: 0 }, 'nothing'), ...others.map((one) => element('option', { value: one.index + 1 }, one.name)));
+    list.value = ground ? ground.index + 1 : 0;
+    const row = (text, node) => element('div', { class: 'row' }, text, node);
+    return [row('On', list), ground ? row('as', pick([['solid', 'solid'], ['glass', 'glass']], groundAs, (as) => set({ groundAs: as }), 'How it is drawn')) : null];
   }
 
   colourSection(choice, set) {
@@ -205,33 +219,39 @@ function rampLegend(choice) {
   return [ramp, element('div', { class: 'ticks' }, ...ticks), ...beyond];
 }
 
-function labelLegend(field) {
-  const most = 24, names = { source_kind: ['input', 'on a segment', 'in a facet'] }[field.name];
-  const items = [...field.categories.subarray(0, most)].flatMap((value, i) => {
-    if (field.hides === value) return [];
-    const swatch = element('i');
-    swatch.style.background = css(labelColour(i));
-    return [element('li', {}, swatch, names?.[value] ?? (value === 0 && ['facet', 'segment', 'marker'].includes(field.name) ? 'none' : String(value)))];
-  });
+function swatch(colour, shape = 'i') {
+  const node = shape === 'i' ? element('i') : element('span', { class: shape });
+  node.style.background = css(colour);
+  return node;
+}
+
+function labelLegend(field, theme) {
+  const most = 24, colours = coloursOf(field, theme.directions);
+  const shape = { segments: 'dash', vertices: 'dot' }[field.location] ?? 'i';
+  const items = [...field.categories.subarray(0, most)].flatMap((value, i) =>
+    (field.hides === value ? [] : [element('li', {}, swatch(colours[i], shape), labelName(field, value) ?? String(value))]));
   const more = field.categories.length - Math.min(most, field.categories.length);
   return [element('ul', { class: 'labels' }, ...items), ...(more > 0 ? [element('p', { class: 'beyond' }, `and ${grouped(more)} more`)] : [])];
 }
 
+const TITLES = { family: 'lines of curvature', umbilic_half_turns: 'umbilics', source_kind: 'added points', cluster: 'critical clusters', reason: 'undecided boxes' };
+
 export function renderLegend(root, choice, theme) {
   const parts = [];
-  const { field } = choice;
-  if (field) {
-    parts.push(element('h2', {}, field.name, ' ', element('span', {}, PLACES[field.location])));
-    parts.push(...(field.isLabel ? labelLegend(field) : rampLegend(choice)));
+  const { field, marks, model } = choice;
+  for (const one of new Set([field, choice.points ? marks : null])) {
+    if (!one) continue;
+    const title = TITLES[one.name];
+    parts.push(element('h2', {}, title ?? one.name, ...(title ? [] : [' ', element('span', {}, PLACES[one.location])])));
+    parts.push(...(one.isLabel ? labelLegend(one, theme) : rampLegend(choice)));
   }
-  if (choice.directions.some(Boolean)) {
-    parts.push(element('ul', { class: 'labels directions' }, ...choice.directions.flatMap((one, i) => {
-      if (!one) return [];
-      const dash = element('span', { class: 'dash' });
-      dash.style.background = css(theme.directions[i]);
-      return [element('li', {}, dash, one.name)];
-    })));
+  const more = choice.directions.flatMap((one, i) => (one ? [element('li', {}, swatch(theme.directions[i], 'dash'), one.name)] : []));
+  if (choice.balls) {
+    more.push(element('li', {}, swatch(theme.ball, 'dot'), 'protecting ball'));
+    if (model.counts.shields > 0) more.push(element('li', {}, swatch(theme.shield, 'dash'), 'shield edge'));
   }
+  if (more.length > 0) parts.push(element('ul', { class: 'labels directions' }, ...more));
+  if (choice.ground) parts.push(element('p', { class: 'beyond' }, `on ${choice.ground.name}`));
   root.replaceChildren(...parts);
 }
 

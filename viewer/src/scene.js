@@ -3,30 +3,41 @@ import {
   BufferAttribute, BufferGeometry, DataTexture, DoubleSide, GLSL3, InstancedBufferAttribute, InstancedBufferGeometry, Mesh,
   NearestFilter, Points, Scene, ShaderMaterial, Vector2, Vector3, WebGLRenderer,
 } from 'three';
-import { labelColour, rampOf } from './colour.js';
-import { FACE_FRAGMENT, FACE_VERTEX, LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX } from './shaders.js';
+import { coloursOf, rampOf } from './colour.js';
+import {
+  BALL_FRAGMENT, BALL_VERTEX, FACE_FRAGMENT, FACE_VERTEX, LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX,
+} from './shaders.js';
 import { Solid } from './solid.js';
 import { buildSurface, findSharpEdges } from './surface.js';
 
 const NOTHING = -10;  // "no value" for the shaders
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
 
+/// What the view is about, in the model's coordinates: the model, or what it lies on.
+export function frameOf(model, ground) {
+  if (!ground) return { centre: [0, 0, 0], half: model.halfExtents, radius: model.radius };
+  const { shift, factor } = model.mapFrom(ground);
+  return { centre: shift, half: ground.halfExtents.map((h) => factor * h), radius: factor * ground.radius };
+}
+
 /// The half-space that stays: normal . p <= offset. `at` runs from 0, nothing stays, to 1, all does.
-export function clipPlane(model, clip) {
+export function clipPlane({ centre, half }, clip) {
   const flip = clip.axis.startsWith('-');
   let normal = AXES[clip.axis.replace('-', '')] ?? clip.axis.split('/').map(Number);
   if (flip && AXES[clip.axis.slice(1)]) normal = normal.map((x) => -x);
   const length = Math.hypot(...normal) || 1;
   normal = normal.map((x) => x / length);
-  const reach = model.halfExtents.reduce((sum, h, i) => sum + h * Math.abs(normal[i]), 0) * 1.0001;
-  return { normal, offset: (2 * clip.at - 1) * reach };
+  const reach = half.reduce((sum, h, i) => sum + h * Math.abs(normal[i]), 0) * 1.0001;
+  const middle = centre.reduce((sum, c, i) => sum + c * normal[i], 0);
+  return { normal, offset: middle + (2 * clip.at - 1) * reach };
 }
 
 function shaderMaterial(vertexShader, fragmentShader, uniforms, extra = {}) {
   return new ShaderMaterial({ glslVersion: GLSL3, vertexShader, fragmentShader, uniforms, ...extra });
 }
 
-function lineGeometry() {
+/// One square per instance; its corners are (0 or 1, -1 or 1).
+function squareGeometry() {
   const geometry = new InstancedBufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(new Float32Array([0, -1, 0, 1, -1, 0, 1, 1, 0, 0, 1, 0]), 3));
   geometry.setIndex([0, 1, 2, 0, 2, 3]);
@@ -53,22 +64,30 @@ export class Stage {
     };
     this.shared = { ...colours, line: { value: new Vector3() }, viewport: { value: new Vector2(1, 1) }, pixel: { value: 1 } };
     const own = (more) => ({ ...this.shared, colouring: { value: 0 }, ...more });
-    this.faces = new Mesh(new BufferGeometry(), shaderMaterial(FACE_VERTEX, FACE_FRAGMENT, own({
-      surface: { value: new Vector3() }, inside: { value: new Vector3() }, edges: { value: 2 },
+    const faces = () => new Mesh(new BufferGeometry(), shaderMaterial(FACE_VERTEX, FACE_FRAGMENT, own({
+      surface: { value: new Vector3() }, inside: { value: new Vector3() }, edges: { value: 2 }, glass: { value: 0 },
     }), { side: DoubleSide }));
-    const lines = () => new Mesh(lineGeometry(), shaderMaterial(LINE_VERTEX, LINE_FRAGMENT, own({
+    this.faces = faces();
+    this.ground = faces();
+    const lines = () => new Mesh(squareGeometry(), shaderMaterial(LINE_VERTEX, LINE_FRAGMENT, own({
       line: { value: new Vector3() }, width: { value: 1 }, vanish: { value: 0 }, lift: { value: 0 }, opacity: { value: 1 },
     }), { transparent: true, side: DoubleSide }));
     this.sharp = lines();
+    this.groundSharp = lines();
+    this.shields = lines();
     this.segments = lines();
     this.directions = [lines(), lines(), lines()];
     this.points = new Points(new BufferGeometry(), shaderMaterial(POINT_VERTEX, POINT_FRAGMENT, own({
-      line: { value: new Vector3() }, size: { value: 6 }, lift: { value: 0 },
+      line: { value: new Vector3() }, size: { value: 6 }, lift: { value: 0 }, ramp: { value: texture(rampOf('dusk', 256), 1) },
     }), { transparent: true }));
-    for (const object of [this.faces, this.sharp, this.segments, ...this.directions, this.points]) {
+    this.balls = new Mesh(squareGeometry(), shaderMaterial(BALL_VERTEX, BALL_FRAGMENT, { line: { value: new Vector3() } },
+      { transparent: true, depthWrite: false, side: DoubleSide }));
+    // In the order in which they are drawn: what is seen through comes last.
+    [this.faces, this.ground, this.sharp, this.groundSharp, this.segments, this.shields, ...this.directions, this.points, this.balls].forEach((object, i) => {
       object.frustumCulled = false;
+      object.renderOrder = i;
       this.scene.add(object);
-    }
+    });
     this.prepared = new Map();
   }
 
@@ -101,7 +120,8 @@ export class Stage {
     this.choice = choice;
     const { model } = choice;
     const made = this.prepare(model);
-    const plane = choice.clip ? clipPlane(model, choice.clip) : null;
+    this.frame = frameOf(model, choice.ground);
+    const plane = choice.clip ? clipPlane(this.frame, choice.clip) : null;
     const keeps = plane
       ? (p, at) => plane.normal[0] * p[at] + plane.normal[1] * p[at + 1] + plane.normal[2] * p[at + 2] <= plane.offset
       : () => true;
@@ -113,67 +133,81 @@ export class Stage {
     this.showSegments(model, made, choice);
     this.showDirections(model, choice);
     this.showPoints(model, made, choice);
+    this.showBalls(model, choice);
+    this.showGround(model, choice, plane !== null);
   }
 
-  /// Fills the buffers of the faces: corner k of triangle i is vertex `corners(i)[k]`.
-  fill(model, count, cornersOf, kindOf) {
-    const position = new Float32Array(9 * count), kind = new Float32Array(3 * count);
-    const vertices = new Uint32Array(3 * count);
-    const p = model.positions;
-    this.seen = new Uint8Array(p.length / 3);
-    for (let i = 0; i < count; ++i) {
-      const corners = cornersOf(i), bits = kindOf(i);
-      for (let k = 0; k < 3; ++k) {
-        const v = corners[k];
-        position.set(p.subarray(3 * v, 3 * v + 3), 9 * i + 3 * k);
-        vertices[3 * i + k] = v;
-        kind[3 * i + k] = bits;
-      }
+  /// Gives a mesh of faces its buffers: three vertices per triangle (`vertices`) and what the shader is to know of each.
+  setFaces(mesh, positions, vertices, kinds) {
+    const position = new Float32Array(3 * vertices.length), kind = new Float32Array(vertices.length);
+    for (let i = 0; i < vertices.length; ++i) {
+      const v = 3 * vertices[i];
+      position[3 * i] = positions[v];
+      position[3 * i + 1] = positions[v + 1];
+      position[3 * i + 2] = positions[v + 2];
+      kind[i] = kinds[(i / 3) | 0];
     }
-    const geometry = this.faces.geometry;
-    geometry.dispose();
-    this.faces.geometry = new BufferGeometry();
-    this.faces.geometry.setAttribute('position', new BufferAttribute(position, 3));
-    this.faces.geometry.setAttribute('kind', new BufferAttribute(kind, 1));
-    this.shown = { count, vertices };
+    mesh.geometry.dispose();
+    mesh.geometry = new BufferGeometry();
+    mesh.geometry.setAttribute('position', new BufferAttribute(position, 3));
+    mesh.geometry.setAttribute('kind', new BufferAttribute(kind, 1));
+    mesh.visible = vertices.length > 0;
+  }
+
+  /// The triangles of a surface that the plane leaves: whole polygons stay or go, by the mean of their corners.
+  trianglesKept({ corners, polygons }, polygonCount, p, keeps) {
+    const all = corners.length / 3;
+    const means = new Float64Array(4 * polygonCount);
+    for (let t = 0; t < all; ++t) {
+      const at = 4 * (polygons ? polygons[t] : t);
+      for (let k = 3 * t; k < 3 * t + 3; ++k) for (let c = 0; c < 3; ++c) means[at + c] += p[3 * corners[k] + c];
+      means[at + 3] += 3;
+    }
+    const kept = new Uint32Array(all), mean = [0, 0, 0];
+    let n = 0;
+    for (let t = 0; t < all; ++t) {
+      const at = 4 * (polygons ? polygons[t] : t);
+      for (let c = 0; c < 3; ++c) mean[c] = means[at + c] / means[at + 3];
+      if (keeps(mean, 0)) kept[n++] = t;
+    }
+    return kept.subarray(0, n);
+  }
+
+  /// Corners and masks of some triangles of a surface, all where `chosen` is null.
+  chosenTriangles({ corners, masks }, chosen) {
+    if (!chosen) return { vertices: corners, kinds: masks };
+    const vertices = new Uint32Array(3 * chosen.length), kinds = new Uint8Array(chosen.length);
+    for (let i = 0; i < chosen.length; ++i) {
+      for (let k = 0; k < 3; ++k) vertices[3 * i + k] = corners[3 * chosen[i] + k];
+      kinds[i] = masks[chosen[i]];
+    }
+    return { vertices, kinds };
   }
 
   showSurface(model, made, keeps, clipped) {
-    const { corners, polygons, masks } = made.surface;
-    const all = corners.length / 3;
-    let chosen = null;
-    if (clipped) {
-      // Whole polygons stay or go, by the mean of their corners.
-      const means = new Float64Array(4 * model.counts.polygons), p = model.positions;
-      for (let t = 0; t < all; ++t) {
-        const at = 4 * (polygons ? polygons[t] : t);
-        for (let k = 0; k < 3; ++k)
-          for (let c = 0; c < 3; ++c) means[at + c] += p[3 * corners[3 * t + k] + c];
-        means[at + 3] += 3;
-      }
-      const kept = [], mean = [0, 0, 0];
-      for (let t = 0; t < all; ++t) {
-        const at = 4 * (polygons ? polygons[t] : t);
-        for (let c = 0; c < 3; ++c) mean[c] = means[at + c] / means[at + 3];
-        if (keeps(mean, 0)) kept.push(t);
-      }
-      chosen = Uint32Array.from(kept);
-    }
+    const { surface } = made;
+    const chosen = clipped ? this.trianglesKept(surface, model.counts.polygons, model.positions, keeps) : null;
+    const { vertices, kinds } = this.chosenTriangles(surface, chosen);
+    this.setFaces(this.faces, model.positions, vertices, kinds);
+    this.shown = { count: kinds.length, vertices };
     const of = (i) => (chosen ? chosen[i] : i);
-    this.fill(model, chosen ? chosen.length : all,
-      (i) => corners.subarray(3 * of(i), 3 * of(i) + 3), (i) => masks[of(i)]);
-    this.shown.polygon = (i) => (polygons ? polygons[of(i)] : of(i));
+    this.shown.polygon = (i) => (surface.polygons ? surface.polygons[of(i)] : of(i));
     this.shown.tetrahedron = () => -1;
-    this.mark(model, corners, (mark) => {
-      for (let i = 0; i < this.shown.vertices.length; ++i) mark[this.shown.vertices[i]] = 1;
+    this.mark(model, surface.corners, (mark) => {
+      for (let i = 0; i < vertices.length; ++i) mark[vertices[i]] = 1;
     });
   }
 
   showSolid(model, made, keeps) {
     const { solid } = made;
     const { faces, kept } = solid.shownFaces(keeps);
-    this.fill(model, faces.length, (i) => solid.corners(faces[i]),
-      (i) => 7 | (solid.polygon[faces[i]] < 0 && solid.neighbour[faces[i]] >= 0 ? 8 : 0));
+    const vertices = new Uint32Array(3 * faces.length), kinds = new Uint8Array(faces.length);
+    for (let i = 0; i < faces.length; ++i) {
+      solid.writeCorners(faces[i], vertices, 3 * i);
+      kinds[i] = 7 | (solid.polygon[faces[i]] < 0 && solid.neighbour[faces[i]] >= 0 ? 8 : 0);
+    }
+    this.setFaces(this.faces, model.positions, vertices, kinds);
+    this.shown = { count: faces.length, vertices };
     this.shown.polygon = (i) => solid.polygon[faces[i]];
     this.shown.tetrahedron = (i) => faces[i] >> 2;
     this.shown.tetrahedra = kept.reduce((sum, k) => sum + k, 0);
@@ -181,6 +215,36 @@ export class Stage {
       for (let t = 0; t < solid.count; ++t)
         if (kept[t]) for (let k = 0; k < 4; ++k) mark[model.tetrahedra[4 * t + k]] = 1;
     });
+  }
+
+  /// The surface of another file, in this one's coordinates, clipped with it.
+  showGround(model, choice, clipped) {
+    const { ground } = choice;
+    const nothing = new Float32Array(0);
+    if (!ground) {
+      this.setFaces(this.ground, nothing, new Uint32Array(0), new Uint8Array(0));
+      this.setLines(this.groundSharp, nothing, nothing, nothing);
+      return;
+    }
+    const made = this.prepare(ground);
+    const { shift, factor } = model.mapFrom(ground);
+    const positions = ground.positions.map((x, i) => shift[i % 3] + factor * x);
+    const hull = ground.hasSurface ? null : made.solid.hull;
+    const surface = hull ? { corners: hull, polygons: null, masks: new Uint8Array(hull.length / 3).fill(7) } : made.surface;
+    const count = hull ? hull.length / 3 : ground.counts.polygons;
+    const chosen = clipped ? this.trianglesKept(surface, count, positions, this.keeps) : null;
+    const { vertices, kinds } = this.chosenTriangles(surface, chosen);
+    this.setFaces(this.ground, positions, vertices, kinds);
+    this.ground.geometry.setAttribute('value', new BufferAttribute(new Float32Array(vertices.length).fill(NOTHING), 1));
+    const glass = choice.groundAs === 'glass';
+    const { material } = this.ground;
+    material.uniforms.glass.value = glass ? 1 : 0;
+    material.transparent = glass;
+    material.depthWrite = !glass;
+    this.ground.renderOrder = glass ? 50 : 1;
+    const seen = new Uint8Array(positions.length / 3);
+    for (const v of vertices) seen[v] = 1;
+    this.showLines(this.groundSharp, { positions }, made.surface.sharp, () => NOTHING, seen);
   }
 
   /// Which vertices are on what is shown; those on nothing go by the plane.
@@ -216,25 +280,32 @@ export class Stage {
         }
       }
       if (field.location === 'segments') this.segments.material.uniforms.colouring.value = label ? 2 : 1;
-      if (field.location === 'vertices' && label) this.points.material.uniforms.colouring.value = 2;
-      this.setRamp(field, map);
+      this.setRamp(field, map, choice.theme);
+    }
+    if (choice.marks) {
+      const { ramp, colouring } = this.points.material.uniforms;
+      colouring.value = 2;
+      ramp.value.dispose();
+      ramp.value = this.labelRamp(choice.marks);
     }
     this.faces.geometry.setAttribute('value', new BufferAttribute(value, 1));
   }
 
-  setRamp(field, map) {
-    const name = field.isLabel ? `label ${field.categories.length}` : map;
+  setRamp(field, map, theme) {
+    const name = field.isLabel ? `label ${field.key} ${field.categories.length} ${theme} ${this.choice.model.index}` : map;
     if (this.rampName === name) return;
     this.rampName = name;
     this.shared.ramp.value.dispose();
-    if (!field.isLabel) {
-      this.shared.ramp.value = texture(rampOf(map, 256), 1);
-      return;
-    }
-    const rows = Math.max(1, Math.ceil(field.categories.length / 256));
+    this.shared.ramp.value = field.isLabel ? this.labelRamp(field) : texture(rampOf(map, 256), 1);
+  }
+
+  /// The colours of a label's categories, 256 to a row.
+  labelRamp(field) {
+    const colours = coloursOf(field, this.strong);
+    const rows = Math.max(1, Math.ceil(colours.length / 256));
     const bytes = new Uint8Array(4 * 256 * rows).fill(255);
-    for (let i = 0; i < field.categories.length; ++i) bytes.set(labelColour(i), 4 * i);
-    this.shared.ramp.value = texture(bytes, rows);
+    colours.forEach((rgb, i) => bytes.set(rgb, 4 * i));
+    return texture(bytes, rows);
   }
 
   /// Element -> its value for the shaders: 0 at the field's minimum, 1 at its maximum; or its label's rank.
@@ -255,7 +326,7 @@ export class Stage {
   setLines(mesh, starts, ends, values) {
     const geometry = mesh.geometry;
     geometry.dispose();
-    mesh.geometry = lineGeometry();
+    mesh.geometry = squareGeometry();
     mesh.geometry.setAttribute('start', new InstancedBufferAttribute(starts, 3));
     mesh.geometry.setAttribute('end', new InstancedBufferAttribute(ends, 3));
     mesh.geometry.setAttribute('value', new InstancedBufferAttribute(values, 1));
@@ -264,15 +335,17 @@ export class Stage {
   }
 
   /// Pairs of vertices as lines, where both ends are on what is shown.
-  showLines(mesh, model, pairs, valueOf) {
-    const p = model.positions, most = pairs.length / 2;
+  showLines(mesh, { positions: p }, pairs, valueOf, seen = this.seen) {
+    const most = pairs.length / 2;
     const starts = new Float32Array(3 * most), ends = new Float32Array(3 * most), values = new Float32Array(most);
     let n = 0;
     for (let i = 0; i < most; ++i) {
       const a = pairs[2 * i], b = pairs[2 * i + 1];
-      if (!this.seen[a] || !this.seen[b]) continue;
-      starts.set(p.subarray(3 * a, 3 * a + 3), 3 * n);
-      ends.set(p.subarray(3 * b, 3 * b + 3), 3 * n);
+      if (!seen[a] || !seen[b]) continue;
+      for (let k = 0; k < 3; ++k) {
+        starts[3 * n + k] = p[3 * a + k];
+        ends[3 * n + k] = p[3 * b + k];
+      }
       values[n++] = valueOf(i);
     }
     this.setLines(mesh, starts.slice(0, 3 * n), ends.slice(0, 3 * n), values.slice(0, n));
@@ -280,7 +353,12 @@ export class Stage {
 
   showSegments(model, made, choice) {
     const given = model.array('segments');
-    const pairs = choice.segments ? [...given, ...made.surface.segments] : [];
+    const loose = made.surface.segments;
+    const pairs = new Uint32Array(choice.segments ? given.length + loose.length : 0);
+    if (choice.segments) {
+      pairs.set(given);
+      pairs.set(loose, given.length);
+    }
     const place = choice.field?.location === 'segments' ? this.placing(choice.field) : () => NOTHING;
     this.showLines(this.segments, model, pairs, (i) => (i < given.length / 2 ? place(i) : NOTHING));
   }
@@ -325,7 +403,7 @@ export class Stage {
 
   showPoints(model, made, choice) {
     const p = model.positions, chosen = [];
-    const field = choice.field?.location === 'vertices' && choice.field.isLabel ? choice.field : null;
+    const field = choice.marks;
     const used = new Uint8Array(p.length / 3);
     for (const array of [made.surface.corners, made.surface.segments, model.array('segments'), model.tetrahedra])
       for (let i = 0; i < array.length; ++i) used[array[i]] = 1;
@@ -334,21 +412,46 @@ export class Stage {
       if (this.seen[v] && ((choice.points && !(field && field.values[v] === field.hides)) || !used[v] || isolated.has(v))) chosen.push(v);
     const place = field ? this.placing(field) : () => NOTHING;
     const geometry = new BufferGeometry();
-    geometry.setAttribute('position', new BufferAttribute(Float32Array.from(chosen.flatMap((v) => [...p.subarray(3 * v, 3 * v + 3)])), 3));
+    geometry.setAttribute('position', new BufferAttribute(Float32Array.from({ length: 3 * chosen.length }, (_, i) => p[3 * chosen[(i / 3) | 0] + (i % 3)]), 3));
     geometry.setAttribute('value', new BufferAttribute(Float32Array.from(chosen, place), 1));
     this.points.geometry.dispose();
     this.points.geometry = geometry;
     this.points.visible = chosen.length > 0;
   }
 
+  /// Protecting balls as glass, and the shield edges on them.
+  showBalls(model, choice) {
+    const radii = choice.balls ? model.balls : null;
+    const p = model.positions, centres = [], sizes = [];
+    if (radii) {
+      for (let v = 0; v < radii.values.length; ++v) {
+        if (!(radii.values[v] > 0) || !this.keeps(p, 3 * v)) continue;
+        centres.push(p[3 * v], p[3 * v + 1], p[3 * v + 2]);
+        sizes.push(radii.values[v] / model.entry.scale);
+      }
+    }
+    this.balls.geometry.dispose();
+    this.balls.geometry = squareGeometry();
+    this.balls.geometry.setAttribute('centre', new InstancedBufferAttribute(Float32Array.from(centres), 3));
+    this.balls.geometry.setAttribute('radius', new InstancedBufferAttribute(Float32Array.from(sizes), 1));
+    this.balls.geometry.instanceCount = sizes.length;
+    this.balls.visible = sizes.length > 0;
+    this.showLines(this.shields, model, radii ? model.array('shields') : [], () => NOTHING);
+  }
+
   setTheme(theme) {
+    this.strong = theme.directions;
     const set = (uniform, rgb) => uniform.value.set(...rgb.map((c) => c / 255));
     const faces = this.faces.material.uniforms;
     set(faces.surface, theme.surface);
     set(faces.inside, theme.inside);
     set(this.shared.line, theme.edge);
     set(this.shared.missing, theme.missing);
-    set(this.sharp.material.uniforms.line, theme.sharp);
+    for (const mesh of [this.sharp, this.groundSharp]) set(mesh.material.uniforms.line, theme.sharp);
+    set(this.ground.material.uniforms.surface, theme.surface);
+    set(this.ground.material.uniforms.inside, theme.inside);
+    set(this.balls.material.uniforms.line, theme.ball);
+    set(this.shields.material.uniforms.line, theme.shield);
     set(this.segments.material.uniforms.line, theme.segment);
     set(this.points.material.uniforms.line, theme.point);
     this.directions.forEach((mesh, i) => set(mesh.material.uniforms.line, theme.directions[i]));
@@ -363,9 +466,18 @@ export class Stage {
     this.shared.viewport.value.set(width * ratio, height * ratio);
     this.shared.pixel.value = ratio;
     // Edges pale as they get shorter than some pixels, evenly over the model.
-    const pixels = this.prepare(this.choice.model).edge / view.unitsPerPixel;
-    this.faces.material.uniforms.edges.value = edges === 'all' ? (this.faces.material.uniforms.colouring.value === 1 ? 0.3 : 0.45) * Math.min(1, Math.max(0, (pixels - 2) / 8)) : 0;
-    this.sharp.visible = edges !== 'none' && this.sharp.geometry.instanceCount > 0;
+    const strength = (length, uniforms) => {
+      const pixels = length / view.unitsPerPixel;
+      return edges === 'all' ? (uniforms.colouring.value === 1 ? 0.3 : 0.45) * Math.min(1, Math.max(0, (pixels - 2) / 8)) : 0;
+    };
+    const { model, ground, groundAs } = this.choice;
+    const setEdges = (mesh, length) => { mesh.material.uniforms.edges.value = strength(length, mesh.material.uniforms); };
+    setEdges(this.faces, this.prepare(model).edge);
+    // Boxes are few, and nothing without their edges.
+    if (model.entry.overlay) this.faces.material.uniforms.edges.value = edges === 'none' ? 0 : 0.6;
+    if (ground) setEdges(this.ground, groundAs === 'glass' ? 0 : this.prepare(ground).edge * model.mapFrom(ground).factor);
+    this.sharp.visible = edges !== 'none' && !model.entry.overlay && this.sharp.geometry.instanceCount > 0;
+    this.groundSharp.visible = edges !== 'none' && groundAs !== 'glass' && this.groundSharp.geometry.instanceCount > 0;
     // A line comes forward by its width, a point by its radius; directions also over the bend of the surface under them.
     const perPixel = view.unitsPerPixel / view.length;
     const setLine = (mesh, thick, vanish, over) => {
@@ -373,11 +485,14 @@ export class Stage {
       mesh.material.uniforms.vanish.value = vanish * ratio;
       mesh.material.uniforms.lift.value = 1.5 * thick * perPixel + over;
     };
-    setLine(this.sharp, 1.3, 0, 0);
-    setLine(this.segments, 1.6, 5, 0.2 * perPixel);
+    for (const mesh of [this.sharp, this.groundSharp]) setLine(mesh, 1.3, 0, 0);
+    // Pieces of lines are short and stay; sides of dense facets fade. Lines lie on the surface only up to its bend.
+    const bare = !(model.hasSurface || model.hasSolid);
+    setLine(this.segments, bare ? 1.8 : 1.6, bare ? 0 : 5, 0.2 * perPixel + (bare && ground ? (0.002 * view.radius) / view.length : 0));
+    setLine(this.shields, 2, 4, 0.4 * perPixel);
     for (const mesh of this.directions) setLine(mesh, 1.6, 3, (0.006 * view.radius) / view.length);
-    this.points.material.uniforms.size.value = 7 * ratio;
-    this.points.material.uniforms.lift.value = 5 * perPixel;
+    this.points.material.uniforms.size.value = (this.choice.marks?.name === 'umbilic_half_turns' ? 10 : 7) * ratio;
+    this.points.material.uniforms.lift.value = 5 * perPixel + (ground ? (0.004 * view.radius) / view.length : 0);
     view.apply(width, height);
     this.renderer.render(this.scene, view.camera);
   }
@@ -401,7 +516,8 @@ export class Stage {
       triangles: this.shown.count, tetrahedra: this.shown.tetrahedra ?? 0, segments: this.segments.geometry.instanceCount,
       sharp: this.sharp.visible ? this.sharp.geometry.instanceCount : 0,
       directions: this.directions.reduce((total, mesh) => total + mesh.geometry.instanceCount, 0),
-      points: this.points.geometry.getAttribute('position').count,
+      points: this.points.geometry.getAttribute('position').count, balls: this.balls.visible ? this.balls.geometry.instanceCount : 0,
+      shields: this.shields.geometry.instanceCount, ground: this.ground.visible ? this.ground.geometry.getAttribute('position').count / 3 : 0,
     };
   }
 

@@ -50,6 +50,7 @@ uniform vec3 inside;
 uniform vec3 line;
 uniform float edges;     // how strongly they are drawn
 uniform float pixel;     // device pixels per CSS pixel
+uniform float glass;     // 1: only the rim is seen
 in float vValue;
 in vec3 vView;
 in vec3 vCorner;
@@ -75,7 +76,8 @@ void main() {
   float size = 1.0 / max(max(slope.x, slope.y), max(slope.z, 1e-6)) / pixel;
   vec3 drawn = toGamma(lit);
   if (edges > 0.0) drawn = mix(drawn, line, edges * edgeAt(vKind, 0.55 * pixel, slope) * smoothstep(0.8, 3.0, size));
-  colour = vec4(drawn, 1.0);
+  float facing = abs(dot(normal, normalize(vView)));
+  colour = vec4(drawn, glass > 0.0 ? mix(0.5, 0.1, smoothstep(0.0, 0.75, facing)) : 1.0);
 }
 `;
 
@@ -148,5 +150,47 @@ void main() {
   if (cover < 0.05) discard;
   vec3 own = colourOf(vValue, line);
   colour = vec4(mix(own * 0.45, own, clamp(size * 0.5 - 1.2 - r + 0.5, 0.0, 1.0)), cover);
+}
+`;
+
+/// A square that covers the ball on the screen; the ball itself is found by its rays.
+export const BALL_VERTEX = `
+in vec3 centre;
+in float radius;
+out vec3 vPlace;
+flat out vec3 vCentre;
+flat out float vRadius;
+flat out vec2 vDepth;
+void main() {
+  vCentre = (modelViewMatrix * vec4(centre, 1.0)).xyz;
+  vRadius = radius;
+  vDepth = vec2(projectionMatrix[2][2], projectionMatrix[3][2]);
+  float far = length(vCentre);
+  vec3 back = -vCentre / far;
+  vec3 across = normalize(abs(back.x) < 0.9 ? cross(back, vec3(1.0, 0.0, 0.0)) : cross(back, vec3(0.0, 1.0, 0.0)));
+  // The outline of a near ball is wider than its radius.
+  float reach = far > 1.01 * radius ? radius * far / sqrt(far * far - radius * radius) : 0.0;
+  vPlace = vCentre + reach * ((2.0 * position.x - 1.0) * across + position.y * cross(back, across));
+  gl_Position = projectionMatrix * vec4(vPlace, 1.0);
+}
+`;
+
+export const BALL_FRAGMENT = `
+uniform vec3 line;
+in vec3 vPlace;
+flat in vec3 vCentre;
+flat in float vRadius;
+flat in vec2 vDepth;
+out vec4 colour;
+void main() {
+  vec3 ray = normalize(vPlace);
+  float middle = dot(ray, vCentre);
+  float rest = vRadius * vRadius - dot(vCentre, vCentre) + middle * middle;
+  if (rest < 0.0) discard;
+  vec3 hit = ray * (middle - sqrt(rest));
+  float facing = sqrt(rest) / vRadius;
+  float shine = pow(max(dot((hit - vCentre) / vRadius, normalize(vec3(-0.4, 0.6, 0.75))), 0.0), 60.0);
+  colour = vec4(line + 0.6 * shine, mix(0.75, 0.16, smoothstep(0.0, 0.55, facing)));
+  gl_FragDepth = 0.5 - 0.5 * (vDepth.x * hit.z + vDepth.y) / hit.z;
 }
 `;

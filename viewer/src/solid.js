@@ -62,6 +62,11 @@ export class Solid {
     const t = face & ~3, [i, j, k] = FACES[face & 3];
     return [this.tetrahedra[t + i], this.tetrahedra[t + j], this.tetrahedra[t + k]];
   }
+  /// The same into an array, without making one.
+  writeCorners(face, out, at) {
+    const t = face & ~3, order = FACES[face & 3];
+    for (let k = 0; k < 3; ++k) out[at + k] = this.tetrahedra[t + order[k]];
+  }
   /// Faces of one tetrahedron only, as corners.
   get hull() {
     const corners = [];

@@ -17,6 +17,9 @@ const CODES = {
   segments: ['segments', (v) => (v ? '1' : '0'), (t) => t === '1'],
   points: ['points', (v) => (v ? '1' : '0'), (t) => t === '1'],
   directions: ['directions', (v) => v.join(','), (t) => (t === '' ? [] : t.split(','))],
+  on: ['ground', (v) => (v ? String(v) : 'none'), (t) => (t === 'none' ? 0 : /^[1-9]\d*$/.test(t) ? Number(t) : undefined)],
+  ground: ['groundAs', String, (t) => (['solid', 'glass'].includes(t) ? t : undefined)],
+  balls: ['balls', (v) => (v ? '1' : '0'), (t) => t === '1'],
   density: ['density', String, (t) => (Number(t) >= 0 && Number(t) <= 1 ? Number(t) : undefined)],
   clip: ['clip', (v) => (v ? `${v.axis},${v.at}` : 'off'), (t) => {
     if (t === 'off') return false;
