@@ -32,7 +32,7 @@ def main():
         print(f"certa-test-skipped: no clang-format {VERSION} here")
         return 0
     files = []
-    for folder in ("include", "src", "cli", "tests", "bench", "examples"):
+    for folder in ("include", "src", "cli", "python", "tests", "bench", "examples"):
         for place, _, names in os.walk(os.path.join(ROOT, folder)):
             files += [os.path.join(place, name) for name in sorted(names) if name.endswith((".h", ".cpp"))]
     unformatted = []

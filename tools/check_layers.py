@@ -28,6 +28,7 @@ ALLOWED = {
     "verify": {"core"},  # shares no code with what it checks
     "frontend": set(),
     "cli": {"frontend"},
+    "python": {"frontend"},
 }
 # Libraries that only some rooms may see: header prefix -> rooms.
 LIBRARIES = {
@@ -37,6 +38,7 @@ LIBRARIES = {
     "mpfi": {"verify"},
     "CLI/": {"cli"},
     "nlohmann/": {"cli"},
+    "pybind11/": {"python"},
 }
 # Only this room builds CGAL's triangulations.
 TRIANGULATIONS = re.compile(r"CGAL/(Constrained_)?(Delaunay_)?(Constrained_Delaunay_)?[Tt]riangulation")
@@ -121,7 +123,7 @@ class Checker:
 
 def main():
     checker = Checker()
-    for folder in ("include", "src", "cli", "tests", "bench", "examples", "tools"):
+    for folder in ("include", "src", "cli", "python", "tests", "bench", "examples", "tools"):
         for path in sources(folder):
             checker.check_file(path)
     unknown = [room for room in sorted(os.listdir(os.path.join(ROOT, "src"))) if room not in ALLOWED]

@@ -2,6 +2,8 @@
 # Sourced by bash with `set -euo pipefail` in the root of the checkout.
 
 build_packages=(g++ cmake ninja-build git ca-certificates libcgal-dev libtbb-dev tao-pegtl-dev libmpfi-dev nlohmann-json3-dev libcli11-dev)
+# What the Python module and its tests take beside.
+python_packages=(python3-dev python3-numpy pybind11-dev python3-pytest python3-hypothesis)
 
 # The checkout may belong to somebody else (a container's mount): git would refuse to tell its commit.
 export GIT_CONFIG_COUNT=1 GIT_CONFIG_KEY_0=safe.directory GIT_CONFIG_VALUE_0=$(pwd -P)

@@ -1,0 +1,36 @@
+#pragma once
+// The functions of the extension module `_certa`, one file each, and what they share. Everything here takes and
+// returns plain Python objects: dictionaries of arrays that certa/_results.py makes objects of.
+#include <certa/conforming.h>
+#include <certa/error.h>
+#include <certa/mesh.h>
+
+#include <memory>
+
+#include "arrays.h"
+#include "run.h"
+
+namespace certa::python {
+
+void add_errors(py::module_& module);
+void add_documents(py::module_& module);
+void add_conform(py::module_& module);
+
+/// A document from an object of class certa.MeshDocument. Errors: InputError, ValueError.
+MeshDocument document_from(py::handle object);
+/// The dictionary that certa.MeshDocument is made of.
+py::dict to_python(MeshDocument&& document);
+
+py::object to_python(const Defect& defect);
+py::list to_python(const std::vector<Defect>& defects);
+py::list to_python(const std::vector<ElementRef>& elements);
+py::list to_python(const std::vector<Violation>& violations);
+py::dict to_python(const std::vector<std::pair<std::string, double>>& stage_seconds);
+py::dict to_python(const ConformingCheck& check);
+
+template <class T>
+py::object to_python(const std::optional<T>& value) {
+    return value ? py::cast(*value) : py::none();
+}
+
+}  // namespace certa::python
