@@ -270,7 +270,7 @@ ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
                     " of the zero set; a smaller --hausdorff may be, or --error");
         return ExitCode::unable;
     }
-    if (!certifies) session.say("by the theorem of Plantinga and Vegter; there is no certificate to verify");
+    if (!certifies) session.say("by subdivision with small variation; there is no certificate to verify");
     if (certifies && !arguments.no_verify) verify(session, result, source.text);
     if (interrupt_flag()) return ExitCode::interrupted;
     if (!arguments.certificate.empty()) {

@@ -3,7 +3,9 @@
 // derivatives.
 #include <certa/implicit.h>
 
+#include <atomic>
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 #include "expression/node.h"
@@ -35,9 +37,14 @@ public:
     const std::vector<Instruction>& instructions() const { return instructions_; }
     std::size_t size() const { return instructions_.size(); }
 
+    /// Statistics: how many enclosures were computed with this tape and its copies, as their evaluators report.
+    std::uint64_t enclosures() const { return enclosures_->load(); }
+    void count_enclosures(std::uint64_t more) const { *enclosures_ += more; }
+
 private:
     friend class TapeBuilder;
     std::vector<Instruction> instructions_;
+    std::shared_ptr<std::atomic<std::uint64_t>> enclosures_ = std::make_shared<std::atomic<std::uint64_t>>(0);
 };
 
 }  // namespace certa::expression

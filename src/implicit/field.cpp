@@ -90,7 +90,7 @@ const Jet<double>& Field::jet(const Point3& place) { return doubles_.evaluate<2>
 
 Certainty Field::certify(const Region& box, unsigned axes) {
     Certainty found;
-    const Jet<Interval>& natural = workspace_.evaluate<1>(box);
+    const Jet<Interval>& natural = enclose<1>(box);
     const Interval value = natural.value;
     std::array<Interval, 3> slopes = natural.gradient;
     found.defined = interval::is_defined(value);
@@ -100,53 +100,48 @@ Certainty Field::certify(const Region& box, unsigned axes) {
     // A slope alone settles a leaf, but a sign spares the triangulation: all forms are tried for it. They cost little
     // beside that.
     if (found.sign == 0) {
-        const Interval at_center = workspace_.evaluate<0>(center.point).value;
+        const Interval at_center = enclose<0>(center.point).value;
         if (note(interval::intersect(value, first_order(at_center, slopes, center)), slopes, axes, found)) return found;
     }
-    const std::array<Interval, 6> hessian = workspace_.evaluate<2>(box).hessian;
-    const Interval narrowed =
-        narrow_by_second_order(hessian, workspace_.evaluate<1>(center.point), center, value, slopes);
+    const std::array<Interval, 6> hessian = enclose<2>(box).hessian;
+    const Interval narrowed = narrow_by_second_order(hessian, enclose<1>(center.point), center, value, slopes);
     note(narrowed, slopes, axes, found);
     return found;
 }
 
-Certainty Field::certify_variation(const Region& box) {
+Certainty Field::certify_variation(const Region& box, std::array<Interval, 3>& slopes) {
     Certainty found;
-    const Jet<Interval>& natural = workspace_.evaluate<1>(box);
+    const Jet<Interval>& natural = enclose<1>(box);
     Interval value = natural.value;
-    std::array<Interval, 3> slopes = natural.gradient;
+    slopes = natural.gradient;
     found.defined = interval::is_defined(value);
     if (!found.defined) return found;
-    // Two copies of each enclosure: the gradients at two points are independent.
-    const auto varies_little = [&] {
-        return interval::sign_of(slopes[0] * slopes[0] + slopes[1] * slopes[1] + slopes[2] * slopes[2]) > 0;
-    };
     const auto decide = [&] {
         found.sign = static_cast<std::int8_t>(interval::sign_of(value));
-        found.slope = found.sign == 0 && varies_little() ? 1 : 0;
+        found.slope = found.sign == 0 && varies_little(slopes) ? 1 : 0;
         return found.sign != 0 || found.slope != 0;
     };
     if (decide()) return found;
     const Center center = center_of(box);
-    const std::array<Interval, 6> hessian = workspace_.evaluate<2>(box).hessian;
-    value = narrow_by_second_order(hessian, workspace_.evaluate<1>(center.point), center, value, slopes);
+    const std::array<Interval, 6> hessian = enclose<2>(box).hessian;
+    value = narrow_by_second_order(hessian, enclose<1>(center.point), center, value, slopes);
     decide();
     return found;
 }
 
 int Field::sign_on(const Region& box) {
-    const Jet<Interval>& natural = workspace_.evaluate<1>(box);
+    const Jet<Interval>& natural = enclose<1>(box);
     const Interval value = natural.value;
     if (const int sign = interval::sign_of(value); sign != 0 || !interval::is_defined(value)) return sign;
     const std::array<Interval, 3> slopes = natural.gradient;
     const Center center = center_of(box);
-    const Interval at_center = workspace_.evaluate<0>(center.point).value;
+    const Interval at_center = enclose<0>(center.point).value;
     if (const int sign = interval::sign_of(interval::intersect(value, first_order(at_center, slopes, center)));
         sign != 0)
         return sign;
     if (interval::sign_of(at_center) == 0) return 0;  // f(c) alone cannot be told from 0
-    const std::array<Interval, 6> hessian = workspace_.evaluate<2>(box).hessian;
-    const Jet<Interval>& middle = workspace_.evaluate<1>(center.point);
+    const std::array<Interval, 6> hessian = enclose<2>(box).hessian;
+    const Jet<Interval>& middle = enclose<1>(center.point);
     return interval::sign_of(first_order(middle.value, middle.gradient, center) + second_order_rest(hessian, center));
 }
 

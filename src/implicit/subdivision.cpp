@@ -1,21 +1,20 @@
-// The classical rival and cross-check of W: leaves on which no two gradients are orthogonal hold pieces of the surface
-// that the signs at corners determine.
+// The classical rival and cross-check of W: subdivision until gradients vary little (Plantinga and Vegter), here with
+// a linear interpolation on T in place of marching cubes and balance (docs/implicit-theorem.md, "the second engine").
 //
-// Plan: subdivide until every leaf has a sign or small normal variation, and a sign if it touches the box; balance the
-// leaves without a sign 2:1 over faces, edges and corners; on every smallest square join the sign changes, negative
-// points being cut off (on squares with four changes the surface is a graph over the square, so that either way is
-// right); fill the loops on each leaf with disks.
+// Plan: subdivide until every leaf has a sign or small normal variation, and a sign if it touches the box; choose
+// values at the points of T; split leaves on which the gradients of f and of the interpolation do not vary little
+// together; march on the tetrahedra.
 #include "implicit/subdivision.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/assert.h"
-#include "core/index_map.h"
 #include "core/parallel.h"
 #include "core/union_find.h"
-#include "core/vector3.h"
 #include "implicit/octree.h"
+#include "implicit/surface.h"
 
 namespace certa::implicit {
 namespace {
@@ -34,14 +33,15 @@ public:
     }
 
     ImplicitResult run() {
-        if (subdivide() && balance()) {
+        if (subdivide() && tame_interpolation()) {
             mesh();
             measure();
             result_.outcome = Outcome::done;
             result_.isotopic = true;
             result_.verdict = result_.components.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
         }
-        result_.statistics.cells = result_.statistics.evaluations = tree_.cells().size();
+        result_.statistics.cells = tree_.cells().size();
+        result_.statistics.evaluations = tape_.enclosures();
         for (const std::uint32_t leaf : tree_.leaves()) {
             ++result_.statistics.leaves;
             result_.statistics.open_leaves += tree_.cell(leaf).known.sign == 0 ? 1 : 0;
@@ -55,11 +55,12 @@ private:
     }
 
     void certify(const std::vector<std::uint32_t>& ids) {
+        slopes_.resize(tree_.cells().size());
         core::parallel_for(ids.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
             Field field(tape_);
             for (std::size_t i = begin; i < end; ++i) {
                 Cell& cell = tree_.cell(ids[i]);
-                const Certainty found = field.certify_variation(tree_.region_of(cell));
+                const Certainty found = field.certify_variation(tree_.region_of(cell), slopes_[ids[i]]);
                 if (found.sign != 0) cell.known.sign = found.sign;
                 if (found.slope != 0) cell.known.slope = 1;
                 cell.known.defined = cell.known.defined || found.defined;
@@ -116,105 +117,149 @@ private:
         }
     }
 
-    /// A leaf without a sign is split when one of at most a quarter of its size touches it.
-    bool balance() {
+    // ---- The interpolation ------------------------------------------------------------------------------------------
+
+    /// Splits leaves until on each one without a sign the gradients of f and of the interpolation vary little together.
+    bool tame_interpolation() {
         for (std::vector<std::uint32_t> children;;) {
-            std::vector<std::uint32_t> large;
-            for (const std::uint32_t leaf : tree_.leaves()) {
-                if (tree_.cell(leaf).known.sign == 0) add_large_neighbours(leaf, large);
+            const std::vector<std::uint32_t> open = open_leaves();
+            if (!settle_points(open)) return false;
+            std::vector<char> tame(open.size(), 0);
+            core::parallel_for(open.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t i = begin; i < end; ++i) tame[i] = is_tame(open[i]) ? 1 : 0;
+            });
+            std::vector<std::uint32_t> wild;
+            for (std::size_t i = 0; i < open.size(); ++i) {
+                if (!tame[i]) wild.push_back(open[i]);
             }
-            std::sort(large.begin(), large.end());
-            large.erase(std::unique(large.begin(), large.end()), large.end());
-            if (large.empty()) return true;
-            if (!split(large, children)) return false;
+            if (wild.empty()) return true;
+            ++result_.statistics.rounds;
+            if (!split(wild, children)) return false;
         }
     }
-    void add_large_neighbours(std::uint32_t leaf, std::vector<std::uint32_t>& large) const {
-        const Cell& cell = tree_.cell(leaf);
-        tree_.visit_around_corners(cell, [&](std::uint32_t other) {
-            if (tree_.cell(other).known.sign == 0 && tree_.cell(other).depth + 1 < cell.depth) large.push_back(other);
-        });
-    }
 
-    // ---- The mesh ---------------------------------------------------------------------------------------------------
-
-    /// Of leaves that have it, else of f in doubles; 0 and NaN count as +. Which sign f really has at a corner does not
-    /// matter as long as all leaves agree.
-    int sign_of(std::uint32_t point) {
-        signs_.resize(tree_.points().size(), 0);
-        if (signs_[point] == 0) {
-            const Point3 place = tree_.grid().place(tree_.points()[point]);
-            const GridPoint& p = tree_.points()[point];
-            const int certain = field_.sign_on(tree_.grid().region(p, p));
-            signs_[point] = static_cast<std::int8_t>(certain != 0 ? certain : field_.value(place) < 0 ? -1 : 1);
-        }
-        return signs_[point];
-    }
-
-    void mesh() {
+    std::vector<std::uint32_t> open_leaves() const {
+        std::vector<std::uint32_t> open;
         for (const std::uint32_t leaf : tree_.leaves()) {
+            if (tree_.cell(leaf).known.sign == 0) open.push_back(leaf);
+        }
+        return open;
+    }
+
+    /// Calls visit(face, centre of the leaf, centre of the square, ring) for the smallest squares of a leaf, all of
+    /// which must have ids.
+    template <class Visit>
+    void visit_faces(const Cell& cell, const Visit& visit) const {
+        const std::uint32_t apex = tree_.points().find(tree_.center_of(cell));
+        for (int face = 0; face < 6; ++face) {
+            GridPoint low = cell.low;
+            if (face % 2 == 1) low[static_cast<std::size_t>(face / 2)] += tree_.size_of(cell);
+            tree_.visit_squares(low, face / 2, face % 2, tree_.size_of(cell),
+                                [&](const GridPoint& center, const auto& ring) {
+                                    visit(face, apex, tree_.points().find(center), ring);
+                                });
+        }
+    }
+
+    /// Ids for the points of T in open leaves; values of the interpolation at them.
+    bool settle_points(const std::vector<std::uint32_t>& open) {
+        std::vector<char> used;
+        const auto use = [&](std::uint32_t point) {
+            if (used.size() <= point) used.resize(std::max<std::size_t>(tree_.points().size(), point + 1), 0);
+            used[point] = 1;
+        };
+        for (const std::uint32_t leaf : open) {
             const Cell cell = tree_.cell(leaf);
-            if (cell.known.sign != 0) continue;
-            next_.clear();
+            use(tree_.points().insert(tree_.center_of(cell)));
             for (int face = 0; face < 6; ++face) {
                 GridPoint low = cell.low;
                 if (face % 2 == 1) low[static_cast<std::size_t>(face / 2)] += tree_.size_of(cell);
                 tree_.visit_squares(low, face / 2, face % 2, tree_.size_of(cell),
-                                    [&](const GridPoint&, const auto& ring) { trace(ring); });
+                                    [&](const GridPoint& center, const auto& ring) {
+                                        use(tree_.points().insert(center));
+                                        for (const std::uint32_t point : ring) use(point);
+                                    });
             }
-            fill_loops();
         }
+        values_.resize(tree_.points().size());
+        core::parallel_for(used.size(), 256, control_, [&](std::size_t begin, std::size_t end) {
+            Field field(tape_);
+            for (std::size_t p = begin; p < end; ++p) {
+                if (used[p] && !values_[p].proved) settle(static_cast<std::uint32_t>(p), field);
+            }
+        });
+        return !control_.cancelled() || stop(Reason::cancelled, {});
     }
 
-    void trace(const std::vector<std::uint32_t>& ring) {
-        const std::size_t count = ring.size();
-        for (std::size_t q = 0; q < count; ++q) {
-            if (sign_of(ring[q]) < 0 || sign_of(ring[(q + 1) % count]) > 0) continue;
-            std::size_t r = (q + 1) % count;  // into a run of negative points after q, out of it after r
-            while (sign_of(ring[(r + 1) % count]) < 0) r = (r + 1) % count;
-            next_[vertex(ring[r], ring[(r + 1) % count])] = vertex(ring[q], ring[(q + 1) % count]);
+    /// The value of f in doubles, or next to nothing where it does not have the sign that the point has: the proved
+    /// one, that of a leaf around it, or else any.
+    void settle(std::uint32_t point, Field& field) {
+        const GridPoint& p = tree_.points()[point];
+        const double value = field.value(tree_.grid().place(p));
+        int sign = field.sign_on(tree_.grid().region(p, p));
+        PointValue& known = values_[point];
+        known.proved = sign != 0;
+        for (unsigned octant = 0; octant < 8 && sign == 0; ++octant) {
+            GridPoint q = p;
+            bool inside = true;
+            for (unsigned a = 0; a < 3; ++a) {
+                const bool below = ((octant >> a) & 1u) != 0;
+                if (below ? p[a] == 0 : p[a] == tree_.grid().side()) inside = false;
+                if (below) --q[a];
+            }
+            if (inside) sign = tree_.cell(tree_.leaf_at(q)).known.sign;
         }
+        if (sign == 0) sign = value < 0 ? -1 : 1;
+        known.value = sign * value > 0 && std::isfinite(value) ? value : sign * 0x1p-900;
+    }
+    int sign_of(std::uint32_t point) const { return values_[point].value < 0 ? -1 : 1; }
+
+    /// Whether the hull of the enclosure of grad f on a leaf and of the gradients of the interpolation on its
+    /// tetrahedra varies little.
+    bool is_tame(std::uint32_t leaf) const {
+        std::array<Interval, 3> slopes = slopes_[leaf];
+        visit_faces(tree_.cell(leaf), [&](int face, std::uint32_t apex, std::uint32_t middle, const auto& ring) {
+            for (std::size_t i = 0; i < ring.size(); ++i)
+                add_gradient(static_cast<std::size_t>(face / 2), {apex, middle, ring[i], ring[(i + 1) % ring.size()]},
+                             slopes);
+        });
+        return Field::varies_little(slopes);
     }
 
-    std::uint32_t vertex(std::uint32_t a, std::uint32_t b) {
-        std::uint32_t id = vertices_.find(a, b);
-        if (id != no_index) return id;
-        id = static_cast<std::uint32_t>(result_.mesh.positions.size());
-        vertices_.set(a, b, id);
-        Point3 low = tree_.grid().place(tree_.points()[a]), high = tree_.grid().place(tree_.points()[b]);
-        if (sign_of(a) > 0) std::swap(low, high);
-        for (int i = 0; i < 30; ++i) {
-            const Point3 middle = 0.5 * (low + high);
-            (field_.value(middle) < 0 ? low : high) = middle;
-        }
-        result_.mesh.positions.push_back(0.5 * (low + high));
-        return id;
+    Interval step(std::size_t axis, std::uint32_t a, std::uint32_t b) const {
+        const auto place = [&](std::uint32_t p) {
+            return Interval(tree_.grid().place(static_cast<int>(axis), tree_.points()[p][axis]));
+        };
+        return place(b) - place(a);
+    }
+    Interval rise(std::uint32_t a, std::uint32_t b) const {
+        return Interval(values_[b].value) - Interval(values_[a].value);
     }
 
-    void fill_loops() {
-        while (!next_.empty()) {
-            std::vector<std::uint32_t> loop{next_.begin()->first};
-            for (auto at = next_.begin(); at != next_.end(); at = next_.find(loop.back())) {
-                loop.push_back(at->second);
-                next_.erase(at);
-            }
-            loop.pop_back();
-            // Two squares of the leaf with the same two changes, at a point on one of its edges: the surface only dips
-            // in, and the leaves beyond share that edge of the mesh.
-            if (loop.size() < 3) continue;
-            std::uint32_t middle = loop[0];
-            if (loop.size() > 3) {
-                Point3 sum{};
-                for (const std::uint32_t v : loop) sum = sum + result_.mesh.positions[v];
-                middle = static_cast<std::uint32_t>(result_.mesh.positions.size());
-                result_.mesh.positions.push_back((1.0 / static_cast<double>(loop.size())) * sum);
-            }
-            for (std::size_t i = 0; i < loop.size(); ++i) {
-                const std::uint32_t a = loop[i], b = loop[(i + 1) % loop.size()];
-                if (a != middle && b != middle)
-                    result_.mesh.triangles.push_back({VertexId{middle}, VertexId{b}, VertexId{a}});
-            }
+    /// From the centre of the leaf to that of the square along `axis`, along the side of the square, and from its
+    /// centre to the side.
+    void add_gradient(std::size_t axis, const std::array<std::uint32_t, 4>& t, std::array<Interval, 3>& slopes) const {
+        const auto [apex, middle, a, b] = t;
+        std::size_t along = (axis + 1) % 3, across = (axis + 2) % 3;
+        if (tree_.points()[a][along] == tree_.points()[b][along]) std::swap(along, across);
+        std::array<Interval, 3> gradient;
+        gradient[axis] = rise(apex, middle) / step(axis, apex, middle);
+        gradient[along] = rise(a, b) / step(along, a, b);
+        gradient[across] = (rise(middle, a) - gradient[along] * step(along, middle, a)) / step(across, middle, a);
+        for (std::size_t i = 0; i < 3; ++i) slopes[i] = interval::hull(slopes[i], gradient[i]);
+    }
+
+    void mesh() {
+        SurfaceBuilder builder(tree_, field_);
+        for (const std::uint32_t leaf : open_leaves()) {
+            visit_faces(tree_.cell(leaf), [&](int, std::uint32_t apex, std::uint32_t middle, const auto& ring) {
+                for (std::size_t i = 0; i < ring.size(); ++i) {
+                    const std::array<std::uint32_t, 4> t{apex, middle, ring[i], ring[(i + 1) % ring.size()]};
+                    builder.add(t, {sign_of(t[0]), sign_of(t[1]), sign_of(t[2]), sign_of(t[3])}, 0);
+                }
+            });
         }
+        result_.mesh = std::move(builder.take().mesh);
     }
 
     /// Components and genera, counted: each vertex once, edges half a triangle's three.
@@ -249,9 +294,12 @@ private:
     const RunControl& control_;
     std::uint64_t max_cells_ = 0;
     int max_depth_ = 0;
-    std::vector<std::int8_t> signs_;
-    std::map<std::uint32_t, std::uint32_t> next_;  ///< along loops on the surface of the leaf at hand
-    core::PairMap vertices_;
+    struct PointValue {
+        double value = 0;  ///< of the interpolation, not 0
+        bool proved = false;
+    };
+    std::vector<PointValue> values_;               ///< per point
+    std::vector<std::array<Interval, 3>> slopes_;  ///< per cell: an enclosure of grad f
     ImplicitResult result_;
 };
 

@@ -6,13 +6,12 @@
 
 namespace certa::implicit {
 
-/// Meshes {f = 0} by subdivision until f is proved non-zero or to have small normal variation on every leaf, balance,
-/// and marching on the corners.
+/// Meshes {f = 0} by subdivision until f is proved non-zero or to have small normal variation on every leaf, together
+/// with its interpolation on the triangulation of the octree.
 ///
 /// Result:    as mesh_implicit without certificate, degrees and nesting.
-/// Guarantee: components and genera by the theorem of the paper; enclosures are sound. The mesh is a closed surface;
-/// that
-///            its triangles do not touch within a leaf is not checked.
+/// Guarantee: the mesh, as its doubles stand, is isotopic to the zero set (docs/implicit-theorem.md, "the second
+/// engine").
 ImplicitResult mesh_by_subdivision(const Expression& function, const Grid& grid, const ImplicitOptions& options,
                                    const RunControl& control);
 

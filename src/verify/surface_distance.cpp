@@ -21,7 +21,7 @@ Point3 cross(const Point3& a, const Point3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 double dot(const Point3& a, const Point3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
-double norm(const Point3& a) { return std::sqrt(dot(a, a)); }
+double norm(const Point3& a) { return std::hypot(a.x, a.y, a.z); }
 
 /// A corner of a piece of a triangle: a box of doubles around the exact point.
 BoxOfDoubles corner_of(const Point3& p) { return {{p.x, p.y, p.z}, {p.x, p.y, p.z}}; }
@@ -107,18 +107,22 @@ private:
 
     /// The map (p, s) -> p + s d(p), d linear on the triangle, has a Jacobian of one sign for 0 <= s <= 1: at a corner
     /// k it is the quadratic polynomial (e1 + s g1) x (e2 + s g2) . d_k, positive if its Bernstein coefficients are.
-    /// Doubles, each product of three lengths being off by far less than 1e-12 of the product of their bounds.
+    /// In doubles: differences of coordinates are off by half a unit in the last place, so e and g by less than 2^-52
+    /// of `reach`, and products of three such vectors, with some thirty more roundings, by far less than 2^-44 of the
+    /// product of their bounds; what might underflow is refused.
     bool keeps_turning(const Triangle& t, const std::vector<Point3>& moved, int side) const {
-        const auto d = [&](std::size_t k) { return moved[index_of(t[k])] - at(t[k]); };
+        const std::array<Point3, 3> d{moved[index_of(t[0])] - at(t[0]), moved[index_of(t[1])] - at(t[1]),
+                                      moved[index_of(t[2])] - at(t[2])};
         const Point3 e1 = at(t[1]) - at(t[0]), e2 = at(t[2]) - at(t[0]);
-        const Point3 g1 = d(1) - d(0), g2 = d(2) - d(0);
+        const Point3 g1 = d[1] - d[0], g2 = d[2] - d[0];
         const Point3 a = cross(e1, e2), c = cross(g1, g2);
         const Point3 b0 = cross(e1, g2), b1 = cross(g1, e2);
-        const double size = (norm(e1) + norm(g1)) * (norm(e2) + norm(g2));
-        for (std::size_t k = 0; k < 3; ++k) {
-            const Point3 way = d(k);
+        const double reach1 = norm(e1) + norm(d[0]) + norm(d[1]), reach2 = norm(e2) + norm(d[0]) + norm(d[2]);
+        for (const Point3& way : d) {
+            const double least = 0x1p-44 * reach1 * reach2 * norm(way);
+            if (!(least > 0x1p-900)) return false;
             const double first = side * dot(a, way), linear = side * (dot(b0, way) + dot(b1, way)),
-                         square = side * dot(c, way), least = 1e-12 * size * norm(way);
+                         square = side * dot(c, way);
             if (!(first > least) || !(first + linear / 2 > least) || !(first + linear + square > least)) return false;
         }
         return true;

@@ -334,6 +334,10 @@ private:
             if (std::isfinite(q.x) && std::isfinite(q.y) && std::isfinite(q.z)) all.add(BoundingBox::of(q, q));
         }
         const double size = std::max({all.high.x - all.low.x, all.high.y - all.low.y, all.high.z - all.low.z});
+        if (!std::isfinite(size) || !std::isfinite(all.high.x + size)) {
+            hinder("the mesh is too large for rays to leave it");
+            return {};
+        }
         for (int attempt = 0; attempt < 50; ++attempt) {
             // Rays in directions near +x, none of which a mesh is likely to be aligned with.
             const double t = (attempt + 1) * 0.0137;

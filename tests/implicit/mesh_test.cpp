@@ -325,6 +325,17 @@ TEST(Engines, Agree) {
     }
 }
 
+// Marching on the corners of leaves, balanced 2:1, found a second component here.
+TEST(Engines, AgreeWhereASquareHasFourSignChanges) {
+    const Expression f = parse_expression("x*x+y*y+z*z-5/2+(8016501717251449/18014398509481984)*atan(y*z-x)");
+    const ImplicitResult result = mesh_implicit(f, {-2.28292925820797, -2.13, -2.17}, {2.11, 2.0600523034029061, 2.19},
+                                                {.max_cells = 300'000, .engine = ImplicitEngine::plantinga_vegter});
+    ASSERT_STREQ(name_of(result.verdict), "certified");
+    const test::MeshTopology topology = test::measure(result.mesh);
+    EXPECT_EQ(topology.flaw, "");
+    EXPECT_EQ(topology.genera, std::vector<int>{0});
+}
+
 TEST(Engines, RefuseWhatTheyCannotDo) {
     const Expression f = parse_expression("x^2+y^2+z^2-1");
     const Point3 low{-2, -2, -2}, high{2, 2, 2};
