@@ -1,8 +1,9 @@
 // Speed of the stages of curvature, beside a reference loop: CPU time of the process, one thread, median of several
 // runs.
 //
-//   curvature_speed VERTICES RUNS [THREADS]
+//   curvature_speed VERTICES RUNS [THREADS [CASE]]
 // A random torus (vertices in random order, as a reconstruction would give them) up to 2M vertices, a grid torus above.
+// CASE: only cases whose name contains it.
 // The reference is one pass over the mesh's arrays that sums the areas of its triangles: what reading the mesh costs.
 #include <certa/curvature.h>
 #include <sys/resource.h>
@@ -49,6 +50,7 @@ int main(int argc, char** argv) {
     const int runs = argc > 2 ? std::atoi(argv[2]) : 5;
     RunControl control;
     control.threads = argc > 3 ? static_cast<unsigned>(std::atoi(argv[3])) : 1;
+    const std::string wanted = argc > 4 ? argv[4] : "";
     const auto side = static_cast<std::uint32_t>(std::sqrt(vertices));
     const TriangleMesh mesh = vertices <= 2000000 ? generators::make_torus(2.0, 0.7, vertices, 1)
                                                   : generators::make_grid_torus(2.0, 0.7, side, side);
@@ -79,6 +81,7 @@ int main(int argc, char** argv) {
         {"jet 2, 2 rings", {.rings = 2, .estimator = Estimator::jet}}};
     std::printf("%-20s %12s %12s %10s\n", "case", "build us/v", "stage us/v", "x pass");
     for (const auto& c : cases) {
+        if (std::string(c.name).find(wanted) == std::string::npos) continue;
         if (n > 2e6 && std::string(c.name) != "2 rings, dual" && std::string(c.name) != "3 rings, dual") continue;
         std::vector<double> build, stage;
         for (int run = 0; run < runs; ++run) {

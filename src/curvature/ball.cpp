@@ -1,8 +1,10 @@
 // Exact balls (thesis, definitions 5 and 7 with B a ball; docs/curvature.md: weights, connected by default, hierarchy).
 //
-// Connected: breadth-first over faces from the vertex, crossing an edge when it meets the ball; that reaches exactly
-// the component of the surface within the ball. Each edge is integrated once, from its left face, each vertex when
-// first met. All sheets: a tree of sums; faces of nodes that the sphere cuts are integrated one by one.
+// Connected: breadth-first over vertices inside. Around a vertex all of whose neighbours are inside the indicator is 1,
+// and its dual cell's record is all that counts; other faces are taken one by one, and from those that the sphere cuts
+// the walk goes on across sides that meet the ball between two ends outside. That reaches exactly the component of the
+// surface within the ball. Each edge is integrated once, from its left face. Kernels take every face one by one.
+// All sheets: a tree of sums; faces of nodes that the sphere cuts are integrated one by one.
 #include "curvature/ball.h"
 
 #include <algorithm>
@@ -17,6 +19,7 @@ constexpr std::array<std::size_t, 3> next{1, 2, 0}, previous{2, 0, 1};
 struct LocalFace {
     std::array<Point3, 3> points;
     std::array<double, 3> squares;
+    std::array<SideCut, 3> sides;  ///< opposite corner i
 };
 
 LocalFace local_face(const Surface& surface, const WeightedBall& ball, Index face) {
@@ -25,26 +28,31 @@ LocalFace local_face(const Surface& surface, const WeightedBall& ball, Index fac
         local.points[i] = ball.local(surface.positions[surface.faces[face][i]]);
         local.squares[i] = dot(local.points[i], local.points[i]);
     }
+    for (std::size_t i = 0; i < 3; ++i)
+        local.sides[i] = cut_side(local.points[next[i]], local.squares[next[i]], local.points[previous[i]],
+                                  local.squares[previous[i]]);
     return local;
 }
 
 double face_integral(const Surface& surface, const WeightedBall& ball, const LocalFace& local, Index face) {
     const FaceGeometry& geometry = surface.face_geometry[face];
-    const double square = ball.radius() * ball.radius();
-    return square * ball.over_triangle(local.points, local.squares, geometry.normal, geometry.area / square);
+    return ball.square() * ball.over_triangle(local.points, local.squares, local.sides, geometry.normal,
+                                              geometry.area * ball.per_square());
+}
+
+void add_hinge(Sums& sums, const BallContext& context, Index h, double weight) {
+    add(sums.swapped, weight, context.tensors[h].swapped);
+    add(sums.plain, weight, context.tensors[h].plain);
+    sums.edge_mass += std::abs(weight * context.surface.hinges[h].angle);
 }
 
 /// The side opposite corner i, from its hinge's left face.
-void add_hinge(Sums& sums, const BallContext& context, const WeightedBall& ball, const LocalFace& local, Index h,
-               std::size_t i) {
+void add_side(Sums& sums, const BallContext& context, const WeightedBall& ball, const LocalFace& local, Index h,
+              std::size_t i) {
     const Hinge& hinge = context.surface.hinges[h];
-    if (hinge.angle == 0.0) return;
-    const double weight = hinge.length * ball.over_segment(local.points[next[i]], local.squares[next[i]],
-                                                           local.points[previous[i]], local.squares[previous[i]]);
-    if (weight == 0.0) return;
-    add(sums.swapped, weight, context.tensors[h].swapped);
-    add(sums.plain, weight, context.tensors[h].plain);
-    sums.edge_mass += std::abs(weight * hinge.angle);
+    if (hinge.angle == 0.0 || !local.sides[i].meets()) return;
+    add_hinge(sums, context, h,
+              hinge.length * ball.over_segment(local.sides[i], local.squares[next[i]], local.squares[previous[i]]));
 }
 
 void add_vertex(Sums& sums, const BallContext& context, const WeightedBall& ball, Index v, double square) {
@@ -66,39 +74,85 @@ std::vector<EdgeTensors> build_hinge_tensors(const Surface& surface, const RunCo
 Sums BallWalker::sum(Index vertex, const Point3& center, double radius, Weight weight) {
     Sums sums;
     const WeightedBall ball(center, radius, weight);
-    vertices_.clear(), faces_.clear(), queue_.clear();
-    for (const Index f : context_.surface.vertex_faces[vertex])
-        if (faces_.mark(f)) queue_.push_back(f);
-    for (std::size_t k = 0; k < queue_.size(); ++k) visit(sums, ball, queue_[k]);
+    inside_.clear(), outside_.clear(), faces_.clear();
+    vertex_queue_.assign(1, vertex);
+    face_queue_.clear();
+    inside_.mark(vertex);
+    std::size_t face = 0;
+    for (std::size_t k = 0; k < vertex_queue_.size(); ++k) {
+        take_vertex(sums, ball, vertex_queue_[k]);
+        for (; face < face_queue_.size(); ++face) take_face(sums, ball, face_queue_[face]);
+    }
     return sums;
 }
 
-void BallWalker::visit(Sums& sums, const WeightedBall& ball, Index face) {
+void BallWalker::take_vertex(Sums& sums, const WeightedBall& ball, Index vertex) {
+    const Surface& surface = context_.surface;
+    bool rim = ball.weight() != Weight::indicator;
+    for (const Index w : surface.vertex_neighbors[vertex]) {
+        if (inside_.has(w)) continue;
+        if (!outside_.has(w)) {
+            const Point3 p = ball.local(surface.positions[w]);
+            if (dot(p, p) <= 1.0) {
+                inside_.mark(w);
+                vertex_queue_.push_back(w);
+                continue;
+            }
+            outside_.mark(w);
+        }
+        rim = true;
+    }
+    if (rim) {
+        take_rim_vertex(sums, ball, vertex);
+        return;
+    }
+    const CellRecord& record = context_.cells.records[vertex];
+    const CellRemainder& remainder = context_.cells.remainders[vertex];
+    add(sums.swapped, 1.0, record.swapped);
+    add(sums.plain, 1.0, remainder.plain);
+    sums.area += record.area, sums.gaussian += record.gaussian;
+    sums.edge_mass += remainder.edge_mass, sums.vertex_mass += remainder.vertex_mass;
+}
+
+/// Not the whole cell: thirds of the faces and halves of the edges that are inside, no difference of large numbers.
+void BallWalker::take_rim_vertex(Sums& sums, const WeightedBall& ball, Index vertex) {
+    const Surface& surface = context_.surface;
+    const Point3 p = ball.local(surface.positions[vertex]);
+    add_vertex(sums, context_, ball, vertex, dot(p, p));
+    const bool whole = ball.weight() == Weight::indicator;
+    for (const Index f : surface.vertex_faces[vertex]) {
+        const auto& face = surface.faces[f];
+        const std::size_t i = face[0] == vertex ? 0 : face[1] == vertex ? 1 : 2;
+        const bool before = outside_.has(face[previous[i]]), after = outside_.has(face[next[i]]);
+        if (!whole || before || after) {
+            if (faces_.mark(f)) face_queue_.push_back(f);
+        } else {
+            sums.area += surface.face_geometry[f].area / 3.0;
+        }
+        if (!whole || before) continue;
+        // The edge to the previous corner: each hinge at the vertex is that of one face only.
+        const Index h = surface.face_hinges[f][next[i]];
+        const Hinge& hinge = surface.hinges[h];
+        if (hinge.angle != 0.0) add_hinge(sums, context_, h, 0.5 * hinge.length);
+    }
+}
+
+void BallWalker::take_face(Sums& sums, const WeightedBall& ball, Index face) {
     const Surface& surface = context_.surface;
     const LocalFace local = local_face(surface, ball, face);
     sums.area += face_integral(surface, ball, local, face);
+    const bool whole = ball.weight() == Weight::indicator;
     const auto& corners = surface.faces[face];
     for (std::size_t i = 0; i < 3; ++i) {
-        const Index v = corners[i];
-        if (local.squares[i] <= 1.0 && vertices_.mark(v)) {
-            add_vertex(sums, context_, ball, v, local.squares[i]);
-            // Sheets that meet in a vertex only.
-            if (surface.flags[v] & (vertex_flags::non_manifold | vertex_flags::excluded))
-                for (const Index f : surface.vertex_faces[v])
-                    if (faces_.mark(f)) queue_.push_back(f);
-        }
+        if (local.squares[i] <= 1.0 && inside_.mark(corners[i])) vertex_queue_.push_back(corners[i]);
+        const bool starts = local.squares[next[i]] <= 1.0, ends = local.squares[previous[i]] <= 1.0;
+        if ((whole && starts && ends) || !local.sides[i].meets()) continue;
         const Index h = surface.face_hinges[face][i];
-        const Hinge& hinge = surface.hinges[h];
-        const Index across = hinge.left == face ? hinge.right : hinge.left;
+        const Index across = surface.across(face, h);
         if (across == no_index) continue;
-        if (hinge.left == face) add_hinge(sums, context_, ball, local, h, i);
-        if (faces_.has(across)) continue;
-        const std::size_t j = next[i], k = previous[i];
-        const bool meets = local.squares[j] <= 1.0 || local.squares[k] <= 1.0;
-        const auto part = meets
-                              ? std::array<double, 2>{0.0, 1.0}
-                              : inside_unit_ball(local.points[j], local.squares[j], local.points[k], local.squares[k]);
-        if (part[0] <= part[1]) faces_.mark(across), queue_.push_back(across);
+        if (surface.hinges[h].left == face) add_side(sums, context_, ball, local, h, i);
+        // Ends inside bring their faces with them.
+        if (!starts && !ends && faces_.mark(across)) face_queue_.push_back(across);
     }
 }
 
@@ -137,8 +191,7 @@ void SheetWalker::add_owned(Sums& sums, const WeightedBall& ball, Index face) {
         if (tree_.owns_corner[face][i] && local.squares[i] <= 1.0)
             add_vertex(sums, context_, ball, surface.faces[face][i], local.squares[i]);
         const Index h = surface.face_hinges[face][i];
-        if (surface.hinges[h].left == face && surface.hinges[h].right != no_index)
-            add_hinge(sums, context_, ball, local, h, i);
+        if (surface.hinges[h].left == face) add_side(sums, context_, ball, local, h, i);
     }
 }
 

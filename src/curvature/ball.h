@@ -20,15 +20,20 @@ struct BallContext {
 class BallWalker {
 public:
     explicit BallWalker(const BallContext& context)
-        : context_(context), vertices_(context.surface.positions.size()), faces_(context.surface.faces.size()) {}
+        : context_(context),
+          inside_(context.surface.positions.size()),
+          outside_(context.surface.positions.size()),
+          faces_(context.surface.faces.size()) {}
     Sums sum(Index vertex, const Point3& center, double radius, Weight weight);
 
 private:
-    void visit(Sums& sums, const WeightedBall& ball, Index face);
+    void take_vertex(Sums& sums, const WeightedBall& ball, Index vertex);
+    void take_rim_vertex(Sums& sums, const WeightedBall& ball, Index vertex);
+    void take_face(Sums& sums, const WeightedBall& ball, Index face);
 
     const BallContext& context_;
-    Marks vertices_, faces_;
-    std::vector<Index> queue_;
+    Marks inside_, outside_, faces_;
+    std::vector<Index> vertex_queue_, face_queue_;
 };
 
 /// The same over all sheets, by a tree of sums: indicator balls cost O(radius / edge length + log n).

@@ -102,19 +102,20 @@ void RingWalker::start(Index vertex) {
 
 std::span<const Index> RingWalker::collect(Index vertex, std::uint64_t rings) {
     start(vertex);
-    std::size_t begin = 0;
-    for (std::uint64_t ring = 0; ring < rings; ++ring) {
-        const std::size_t end = found_;
-        if (begin == end) break;
-        for (; begin < end; ++begin) {
+    std::size_t begin = 0, found = found_;
+    for (std::uint64_t ring = 0; ring < rings && begin < found; ++ring) {
+        for (const std::size_t end = found; begin < end; ++begin) {
             const std::span<const Index> neighbors = surface_.vertex_neighbors[list_[begin]];
+            found_ = found;
             reserve(neighbors.size());
+            Index* const list = list_.data();
             for (const Index w : neighbors) {
-                list_[found_] = w;
-                found_ += vertices_.mark_and_count(w);
+                list[found] = w;
+                found += vertices_.mark_and_count(w);
             }
         }
     }
+    found_ = found;
     return {list_.data(), found_};
 }
 

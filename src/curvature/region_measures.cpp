@@ -259,8 +259,7 @@ std::vector<int> compute_multiplicities(const TriangleMesh& mesh, VertexId verte
     for (const Triangle& t : mesh.triangles)
         if (std::find(t.begin(), t.end(), vertex) != t.end()) star.triangles.push_back(t);
     const Surface surface = build_surface(star, {});
-    const auto place = std::find(surface.vertex_sources.begin(), surface.vertex_sources.end(), index_of(vertex));
-    const auto v = static_cast<Index>(place - surface.vertex_sources.begin());
+    const Index v = surface.sorted_vertices[index_of(vertex)];
     if (!has_solid_link(surface, v))
         refuse(DefectKind::open_facet,
                "the triangles around " + name + " are not closed up, or not consistently oriented: it bounds no solid");

@@ -75,8 +75,8 @@ Point3 scaled(const Point3& p, int exponent) {
     return {std::ldexp(p.x, exponent), std::ldexp(p.y, exponent), std::ldexp(p.z, exponent)};
 }
 
-/// Sorted positions; returns input -> sorted.
-std::vector<Index> sort_vertices(const TriangleMesh& mesh, Surface& surface) {
+/// Sorted positions, and input -> sorted.
+void sort_vertices(const TriangleMesh& mesh, Surface& surface) {
     const std::size_t n = mesh.positions.size();
     std::vector<bool> used(n);
     for (const Triangle& t : mesh.triangles)
@@ -108,22 +108,22 @@ std::vector<Index> sort_vertices(const TriangleMesh& mesh, Surface& surface) {
         order[i] = {key, static_cast<Index>(i)};
     }
     sort_by_key(order, last);
-    std::vector<Index> sorted_of(n);
+    surface.sorted_vertices.resize(n);
     surface.positions.resize(n);
     surface.vertex_sources.resize(n);
     for (std::size_t k = 0; k < n; ++k) {
         const Index source = order[k].second;
-        sorted_of[source] = static_cast<Index>(k);
+        surface.sorted_vertices[source] = static_cast<Index>(k);
         surface.vertex_sources[k] = source;
         surface.positions[k] = scaled(mesh.positions[source], -surface.exponent);
     }
     surface.diagonal = distance(scaled(low, -surface.exponent), scaled(high, -surface.exponent));
     surface.used_vertices = static_cast<std::size_t>(std::count(used.begin(), used.end(), true));
     surface.statistics.unused_vertices = n - surface.used_vertices;
-    return sorted_of;
 }
 
-void sort_faces(const TriangleMesh& mesh, const std::vector<Index>& sorted_of, Surface& surface) {
+void sort_faces(const TriangleMesh& mesh, Surface& surface) {
+    const std::vector<Index>& sorted_of = surface.sorted_vertices;
     std::vector<std::pair<std::uint64_t, Index>> order;
     order.reserve(mesh.triangles.size());
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -433,8 +433,8 @@ void count(Surface& surface) {
 Surface build_surface(const TriangleMesh& mesh, const RunControl& control) {
     require_valid(mesh);
     Surface surface;
-    const std::vector<Index> sorted_of = sort_vertices(mesh, surface);
-    sort_faces(mesh, sorted_of, surface);
+    sort_vertices(mesh, surface);
+    sort_faces(mesh, surface);
     const std::size_t n = surface.positions.size();
     surface.flags.assign(n, 0);
     for (std::size_t v = surface.used_vertices; v < n; ++v) surface.flags[v] = vertex_flags::unused;

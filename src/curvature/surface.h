@@ -44,9 +44,10 @@ struct Surface {
     int exponent = 0;
     // Vertices, sorted; unused ones come last.
     std::vector<Point3> positions;
-    std::vector<Index> vertex_sources;  ///< sorted -> input
-    std::vector<Point3> normals;        ///< unit, area-weighted; 0 where undefined
-    std::vector<double> defects;        ///< integral of mu over directions: the angle defect
+    std::vector<Index> vertex_sources;   ///< sorted -> input
+    std::vector<Index> sorted_vertices;  ///< input -> sorted
+    std::vector<Point3> normals;         ///< unit, area-weighted; 0 where undefined
+    std::vector<double> defects;         ///< integral of mu over directions: the angle defect
     std::vector<double> angle_sums;
     std::vector<std::uint8_t> flags;  ///< vertex_flags
     std::size_t used_vertices = 0;

@@ -26,49 +26,58 @@ double square_integral(double u, double m, double v) {
 
 }  // namespace
 
-std::array<double, 2> inside_unit_ball(const Point3& a, double a2, const Point3& b, double b2) {
-    if (a2 <= 1.0 && b2 <= 1.0) return {0.0, 1.0};
+SideCut cut_side(const Point3& a, double a2, const Point3& b, double b2) {
     const Point3 d = b - a;
-    const double dd = dot(d, d), ad = dot(a, d);
-    // dd t^2 + 2 ad t + (a2 - 1) <= 0
-    const double discriminant = ad * ad - dd * (a2 - 1.0);
-    if (!(discriminant >= 0.0) || !(dd > 0.0)) return {1.0, 0.0};
-    const double root = std::sqrt(discriminant), big = ad > 0.0 ? -(ad + root) : root - ad;
-    // big / dd and (a2 - 1) / big are the two roots, neither by a difference of near numbers.
-    const double first = big / dd, second = big != 0.0 ? (a2 - 1.0) / big : first;
-    const double low = std::min(first, second), high = std::max(first, second);
-    return {a2 <= 1.0 ? 0.0 : std::max(0.0, low), b2 <= 1.0 ? 1.0 : std::min(1.0, high)};
+    SideCut side{dot(a, d), dot(d, d)};
+    const bool starts = a2 <= 1.0, ends = b2 <= 1.0;
+    if (starts && ends) {
+        side.from = 0.0, side.to = 1.0;
+        return side;
+    }
+    // square t^2 + 2 along t + rest <= 0
+    const double along = side.along, rest = a2 - 1.0;
+    if (!starts && !ends && (along >= 0.0 || along + side.square <= 0.0)) return side;  // nearest at an end
+    const double discriminant = along * along - side.square * rest;
+    if (!(discriminant >= 0.0) || !(side.square > 0.0)) return side;
+    // big / square and rest / big are the two roots, neither by a difference of near numbers.
+    const double root = std::sqrt(discriminant), big = along > 0.0 ? -(along + root) : root - along;
+    if (along > 0.0) {  // starts inside
+        side.from = 0.0, side.to = std::clamp(rest / big, 0.0, 1.0);
+    } else {
+        side.from = starts ? 0.0 : std::clamp(rest / big, 0.0, 1.0);
+        side.to = ends ? 1.0 : std::clamp(big / side.square, 0.0, 1.0);
+    }
+    return side;
 }
 
 double AngleSum::value() const { return std::atan2(im_, re_) + 2.0 * std::numbers::pi * turns_; }
 
-double WeightedBall::over_segment(const Point3& a, double a2, const Point3& b, double b2) const {
-    const auto [from, to] = inside_unit_ball(a, a2, b, b2);
-    if (!(to > from)) return 0.0;
-    if (profile_.weight == Weight::indicator) return to - from;
-    const Point3 d = b - a;
-    const double dd = dot(d, d);
-    // s between two parameters from their values: quadratic with second derivative -2 dd.
-    const auto s_at = [&](double t) { return 1.0 - ((1.0 - t) * a2 + t * b2 - t * (1.0 - t) * dd); };
-    const double middle = s_at(0.5 * (from + to)), width = to - from;
-    if (profile_.weight == Weight::kernel2) return width * square_integral(s_at(from), middle, s_at(to));
+double WeightedBall::over_segment(const SideCut& side, double a2, double b2) const {
+    const double width = side.to - side.from;
+    if (!(width > 0.0)) return 0.0;
+    if (profile_.weight == Weight::indicator) return width;
+    // s between two parameters from their values: quadratic with second derivative -2 |b - a|^2.
+    const auto s_at = [&](double t) { return 1.0 - ((1.0 - t) * a2 + t * b2 - t * (1.0 - t) * side.square); };
+    const double center = 0.5 * (side.from + side.to);
+    if (profile_.weight == Weight::kernel2)
+        return width * square_integral(s_at(side.from), s_at(center), s_at(side.to));
     double sum = 0.0;
     for (std::size_t k = 0; k < 4; ++k)
-        sum += gauss4_weights[k] * profile_.at(s_at(0.5 * (from + to) + 0.5 * width * gauss4_points[k]));
+        sum += gauss4_weights[k] * profile_.at(s_at(center + 0.5 * width * gauss4_points[k]));
     return 0.5 * width * sum;
 }
 
-double WeightedBall::over_inner_triangle(const std::array<double, 3>& squares, const std::array<double, 3>& sides,
+double WeightedBall::over_inner_triangle(const std::array<double, 3>& squares, const std::array<SideCut, 3>& sides,
                                          double area) const {
     // Squared distance at barycentric l: sum l_i squares_i - sum over pairs l_i l_j sides_k.
     const auto s_at = [&](double u, double v, double w) {
-        return 1.0 - (u * squares[0] + v * squares[1] + w * squares[2] - v * w * sides[0] - w * u * sides[1] -
-                      u * v * sides[2]);
+        return 1.0 - (u * squares[0] + v * squares[1] + w * squares[2] - v * w * sides[0].square -
+                      w * u * sides[1].square - u * v * sides[2].square);
     };
     if (profile_.weight == Weight::kernel2) {
         const double a = 1.0 - squares[0], b = 1.0 - squares[1], c = 1.0 - squares[2];
-        const double ma = 0.5 * (b + c) + 0.25 * sides[0], mb = 0.5 * (c + a) + 0.25 * sides[1];
-        const double mc = 0.5 * (a + b) + 0.25 * sides[2];
+        const double ma = 0.5 * (b + c) + 0.25 * sides[0].square, mb = 0.5 * (c + a) + 0.25 * sides[1].square;
+        const double mc = 0.5 * (a + b) + 0.25 * sides[2].square;
         // The mass matrix of quadratic elements.
         const double corners = 6.0 * (a * a + b * b + c * c) - 2.0 * (a * b + b * c + c * a);
         const double middles = 32.0 * (ma * ma + mb * mb + mc * mc + ma * mb + mb * mc + mc * ma);
@@ -99,53 +108,43 @@ double WeightedBall::primitive(double full, double s) const {
     return 0.0;
 }
 
-double WeightedBall::over_polygon_edge(const Point3& a, const Point3& b, const Point3& normal, double height2,
-                                       AngleSum& outside) const {
-    const double turn = dot(normal, cross(a, b));
-    if (turn == 0.0) return 0.0;
-    const double a2 = dot(a, a) + height2, b2 = dot(b, b) + height2, full = 1.0 - height2;
-    // The ball meets the plane in a disc around the foot of its centre: |x|^2 <= full for x in the plane, which is the
-    // same inequality as for the ball, since x is at a right angle to the height.
-    const auto [from, to] = inside_unit_ball(a, a2, b, b2);
-    const Point3 d = b - a;
-    // Outside F is constant: all that counts is the angle under which a part is seen.
-    const auto seen = [&](const Point3& p, const Point3& q) { outside.add(dot(p, q), dot(normal, cross(p, q))); };
-    if (!(to > from)) {
-        seen(a, b);
-        return 0.0;
-    }
-    if (from > 0.0) seen(a, a + from * d);
-    if (to < 1.0) seen(a + to * d, b);
-    if (profile_.weight == Weight::indicator) return turn * 0.5 * (to - from);
-    double inner = 0.0;
-    for (std::size_t k = 0; k < 4; ++k) {
-        const double t = 0.5 * (from + to) + 0.5 * (to - from) * gauss4_points[k];
-        const Point3 x = a + t * d;
-        inner += gauss4_weights[k] * primitive(full, full - dot(x, x));
-    }
-    return turn * 0.5 * (to - from) * inner;
-}
-
 double WeightedBall::over_triangle(const std::array<Point3, 3>& p, const std::array<double, 3>& squares,
-                                   const Point3& normal, double area) const {
-    if (squares[0] <= 1.0 && squares[1] <= 1.0 && squares[2] <= 1.0) {
-        if (profile_.weight == Weight::indicator) return area;
-        const auto side = [&](std::size_t i, std::size_t j) {
-            const Point3 d = p[j] - p[i];
-            return dot(d, d);
-        };
-        return over_inner_triangle(squares, {side(1, 2), side(2, 0), side(0, 1)}, area);
-    }
+                                   const std::array<SideCut, 3>& sides, const Point3& normal, double area) const {
+    if (squares[0] <= 1.0 && squares[1] <= 1.0 && squares[2] <= 1.0)
+        return profile_.weight == Weight::indicator ? area : over_inner_triangle(squares, sides, area);
     if (area == 0.0) return 0.0;
-    const double height = dot(normal, p[0]), height2 = height * height;
-    if (height2 >= 1.0) return 0.0;
-    const Point3 foot = height * normal;
-    const std::array<Point3, 3> flat{p[0] - foot, p[1] - foot, p[2] - foot};
+    // The ball meets the plane in a disc around the foot of its centre, of squared radius `full`. Points stay where
+    // they are: products of points less height^2 are those of their shadows around the foot, and so is the turn.
+    const double height = dot(normal, p[0]), height2 = height * height, full = 1.0 - height2;
+    if (full <= 0.0) return 0.0;
+    constexpr std::array<std::size_t, 3> next{1, 2, 0}, previous{2, 0, 1};
     AngleSum outside;
-    double sum = over_polygon_edge(flat[0], flat[1], normal, height2, outside) +
-                 over_polygon_edge(flat[1], flat[2], normal, height2, outside) +
-                 over_polygon_edge(flat[2], flat[0], normal, height2, outside);
-    const double full = 1.0 - height2;
+    double sum = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const std::size_t j = next[i], k = previous[i];
+        const SideCut& side = sides[i];
+        const double turn = dot(normal, cross(p[j], p[k]));
+        if (turn == 0.0) continue;
+        // Outside F is constant: all that counts is the angle under which a part is seen.
+        if (!(side.to > side.from)) {
+            outside.add(squares[j] + side.along - height2, turn);
+            continue;
+        }
+        if (side.from > 0.0) outside.add(squares[j] + side.from * side.along - height2, side.from * turn);
+        const double rest = 1.0 - side.to;
+        if (rest > 0.0) outside.add(squares[k] - rest * (side.along + side.square) - height2, rest * turn);
+        const double half = 0.5 * (side.to - side.from);
+        if (profile_.weight == Weight::indicator) {
+            sum += turn * half;
+            continue;
+        }
+        double inner = 0.0;
+        for (std::size_t q = 0; q < 4; ++q) {
+            const double t = 0.5 * (side.from + side.to) + half * gauss4_points[q];
+            inner += gauss4_weights[q] * primitive(full, 1.0 - (squares[j] + t * (2.0 * side.along + t * side.square)));
+        }
+        sum += turn * half * inner;
+    }
     sum += full * primitive(full, 0.0) * outside.value();
     // A sliver's normal is noise: the weight's range bounds the integral all the same (the order 4 kernel dips to
     // -0.08).

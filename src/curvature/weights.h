@@ -37,36 +37,47 @@ private:
     double re_ = 1.0, im_ = 0.0, turns_ = 0.0;
 };
 
+/// A segment from a to b against the unit ball.
+struct SideCut {
+    double along = 0.0;           ///< a . (b - a)
+    double square = 0.0;          ///< |b - a|^2
+    double from = 1.0, to = 0.0;  ///< where it runs inside: parameters in [0, 1]; nowhere if from > to
+    bool meets() const { return from <= to; }
+};
+/// `a2`, `b2`: squares of a and b.
+SideCut cut_side(const Point3& a, double a2, const Point3& b, double b2);
+
 /// A ball: everything is relative to its centre and in units of its radius.
 class WeightedBall {
 public:
     WeightedBall(const Point3& center, double radius, Weight weight)
-        : center_(center), radius_(radius), per_radius_(1.0 / radius), profile_{weight} {}
+        : center_(center),
+          per_radius_(1.0 / radius),
+          square_(radius * radius),
+          per_square_(1.0 / square_),
+          profile_{weight} {}
 
     Point3 local(const Point3& p) const { return per_radius_ * (p - center_); }
-    double radius() const { return radius_; }
+    double square() const { return square_; }  ///< of the radius
+    double per_square() const { return per_square_; }
+    Weight weight() const { return profile_.weight; }
     /// The weight at a point; 0 outside. `square` is its squared distance in units of the radius.
     double at(double square) const { return square <= 1.0 ? profile_.at(1.0 - square) : 0.0; }
-    /// Integral over the segment from a to b (local points with their squares), in units of its length.
-    double over_segment(const Point3& a, double a2, const Point3& b, double b2) const;
-    /// Integral over the triangle (local points), in units of the squared radius; `normal` is its unit normal, `area`
-    /// its area in units of the squared radius.
-    double over_triangle(const std::array<Point3, 3>& p, const std::array<double, 3>& squares, const Point3& normal,
-                         double area) const;
+    /// Integral over a side, in units of its length; `a2`, `b2`: squares of its ends.
+    double over_segment(const SideCut& side, double a2, double b2) const;
+    /// Integral over the triangle (local points), in units of the squared radius; side i is opposite corner i; `normal`
+    /// is its unit normal, `area` its area in units of the squared radius.
+    double over_triangle(const std::array<Point3, 3>& p, const std::array<double, 3>& squares,
+                         const std::array<SideCut, 3>& sides, const Point3& normal, double area) const;
 
 private:
-    double over_inner_triangle(const std::array<double, 3>& squares, const std::array<double, 3>& sides,
+    double over_inner_triangle(const std::array<double, 3>& squares, const std::array<SideCut, 3>& sides,
                                double area) const;
-    double over_polygon_edge(const Point3& a, const Point3& b, const Point3& normal, double height2,
-                             AngleSum& outside) const;
     double primitive(double full, double s) const;
 
     Point3 center_;
-    double radius_, per_radius_;
+    double per_radius_, square_, per_square_;
     Profile profile_;
 };
-
-/// Where the segment from a to b runs inside the unit ball: parameters in [0, 1]; empty (first > second) if nowhere.
-std::array<double, 2> inside_unit_ball(const Point3& a, double a2, const Point3& b, double b2);
 
 }  // namespace certa::curvature
