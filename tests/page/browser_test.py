@@ -334,6 +334,88 @@ class PageTest(unittest.TestCase):
                 self.assertGreater(report["points"] + report["segments"], 0)
                 self.assertGreater(report["covered"], 10)
 
+    def test_lines_lie_on_the_surface_of_another_file(self):
+        """Circles on the torus, 64 sides each: three along its axis circle (one outside, one inside, one on top), two across."""
+        points, segments, families = [], [], []
+        for family, fixed in ((1, 0), (1, math.pi), (1, math.pi / 2), (2, 0), (2, math.pi)):
+            first = len(points)
+            for i in range(64):
+                u, v = (math.pi * i / 32, fixed) if family == 1 else (fixed, math.pi * i / 32)
+                points.append(((1 + 0.4 * math.cos(v)) * math.cos(u), (1 + 0.4 * math.cos(v)) * math.sin(u), 0.4 * math.sin(v)))
+                segments.append((first + i, first + (i + 1) % 64))
+                families.append(family)
+        marks = [0] * len(points) + [1, 1, -1]
+        points += [(0, -1.4, 0), (0, -1, 0.4), (1.4, 0, 0)]
+        array = lambda kind, name, rows: f'<DataArray type="{kind}" Name="{name}" NumberOfComponents="{len(rows[0])}" format="ascii">' + " ".join(
+            str(x) for row in rows for x in row) + "</DataArray>"
+        one = lambda rows: [(x,) for x in rows]
+        self.write("lines.vtu", f'<?xml version="1.0"?><VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian" header_type="UInt64">'
+                   f'<UnstructuredGrid><Piece NumberOfPoints="{len(points)}" NumberOfCells="{len(segments)}">'
+                   f'<Points>{array("Float64", "Points", points)}</Points><Cells>{array("Int64", "connectivity", one(sum(segments, ())))}'
+                   f'{array("Int64", "offsets", one(range(2, 2 * len(segments) + 1, 2)))}{array("UInt8", "types", one([3] * len(segments)))}</Cells>'
+                   f'<PointData>{array("Int64", "umbilic_half_turns", one(marks))}</PointData><CellData>{array("Int64", "family", one(families))}</CellData>'
+                   '</Piece></UnstructuredGrid></VTKFile>')
+        page = self.make("lines.html", "torus.ply", "lines.vtu")
+        report = self.open("file=2&theme=light", page)
+        self.assertEqual((report["ground"], report["segments"], report["points"]), (2304, 320, 3))
+        self.assertEqual((report["field"], report["edges"], report["counts"]["umbilics"]), ("family", "sharp", 3))
+        legend = self.browser.evaluate("document.getElementById('legend').innerText")
+        for words in ("lines of curvature", "along k_min", "along k_max", "umbilics", "wedge", "trisector", "on torus.ply"):
+            self.assertIn(words, legend)
+        # Seen from above: the circle on top, one across, the surface beside them; from below the same circle is hidden.
+        state = "file=2&theme=light&panel=0&points=0&edges=none&on=1&view="
+        blue, red, bare, hidden = (self.pixel(state + view, place) for view, place in (
+            ("0,90", (0, 1, 0.4)), ("0,90", (-1.283, 0, 0.283)), ("0,90", (0, -1.28, 0.28)), ("0,-90", (0, 1, 0.4))))
+        self.assertGreater(blue[2], blue[0] + 60)
+        self.assertGreater(red[0], red[2] + 60)
+        for colour in (bare, hidden):
+            self.assertLess(max(colour[:3]) - min(colour[:3]), 60)
+            self.assertEqual(colour[3], 255)
+        alone = self.do("location.hash = 'file=2&theme=light&on=none'; new Promise(done => setTimeout(done, 30))")
+        self.assertEqual(alone["ground"], 0)
+        self.assertLess(alone["covered"], 0.5 * report["covered"])
+        self.browser.evaluate("(() => { const list = document.querySelector('[aria-label=\"Surface underneath\"]'); list.value = '1'; list.dispatchEvent(new Event('change')); })()")
+        self.assertEqual(self.press("glass")["ground"], 2304)
+        self.browser.evaluate("new Promise(done => setTimeout(done, 250))")
+        self.assertIn("on=1&ground=glass", self.browser.evaluate("location.hash"))
+
+    def pixel(self, state, place):
+        """The colour where a place in space is seen."""
+        self.do(f"clearTimeout(certa.pending); certa.written = null; history.replaceState(null, '', '#{state}'); certa.arrive()")
+        return self.browser.evaluate(
+            "(() => { certa.report(); const gl = document.getElementById('stage').getContext('webgl2'); const pixel = new Uint8Array(4);"
+            "const { scale, origin } = certa.choice.model.entry, { camera } = certa.view;"
+            "const times = (m, p) => [0, 1, 2, 3].map(i => p.reduce((sum, x, k) => sum + m.elements[4 * k + i] * x, 0));"
+            f"const p = times(camera.projectionMatrix, times(camera.matrixWorldInverse, [...{list(place)}.map((x, i) => (x - origin[i]) / scale), 1]));"
+            "const [x, y] = [gl.drawingBufferWidth, gl.drawingBufferHeight].map((size, i) => Math.floor((p[i] / p[3] + 1) / 2 * size));"
+            "gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); return [...pixel]; })()")
+
+    def test_boxes_in_glass(self):
+        self.write("torus.json", '{"command":"implicit","box":{"low":[-2,-2,-2],"high":[2,2,2]},"obstacles":[{"reason":"singular","low":[-0.2,-0.2,-0.2],"high":[0.2,0.2,0.2]},'
+                   '{"reason":"budget","low":[1,0,0],"high":[1.000001,0.000001,0.000001]}]}')
+        page = self.make("boxes.html", "block.mesh", "torus.ply", "torus.json")
+        report = self.open("file=3", page)
+        self.assertEqual((report["triangles"], report["ground"], report["points"], report["field"]), (24, 2304, 2, "reason"))
+        legend = self.browser.evaluate("document.getElementById('legend').innerText")
+        for words in ("undecided boxes", "singular", "budget", "on torus.ply"):  # the file of the same name
+            self.assertIn(words, legend)
+        self.assertGreater(report["covered"], 500)
+        self.assertGreater(self.press("solid")["covered"], 3 * report["covered"])
+        self.assertGreater(self.open("file=3&on=none&segments=1", page)["segments"], 11)
+
+    def test_protecting_balls_are_drawn(self):
+        self.write("wedge.off", "OFF\n6 2 0\n0 0 0\n0 0 1\n3 0 0.2\n3 0 0.9\n3 0.4 0.1\n3 0.4 0.8\n4 0 2 3 1\n4 0 4 5 1\n")
+        if subprocess.run([CERTA, "conform", "wedge.off", "--protect", "all", "-o", "wedge.vtu"], capture_output=True, cwd=self.folder).returncode == 2:
+            self.skipTest("this certa has no conform")
+        page = self.make("wedge.html", "wedge.vtu")
+        report = self.open("show=facets&edges=none", page)
+        self.assertEqual((report["balls"], report["shields"]), (report["counts"]["balls"], report["counts"]["shields"]))
+        self.assertGreater(report["balls"], 10)
+        self.assertIn("shield edge", self.browser.evaluate("document.getElementById('legend').innerText"))
+        without = self.do("[...document.querySelectorAll('label')].find(one => one.textContent === 'Protecting balls').click()")
+        self.assertEqual((without["balls"], without["shields"]), (0, 0))
+        self.assertGreater(report["covered"], without["covered"] + 1000)
+
     def test_names_are_shown_as_they_are(self):
         name = "<b>&'\" é.off"
         self.write(name, "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n")

@@ -7,6 +7,7 @@ Run by ctest as `page_data_test.py CERTA`; needs nothing but Python's own librar
 import array
 import base64
 import html.parser
+import itertools
 import json
 import math
 import os
@@ -39,6 +40,22 @@ PLATE = """8 3 0 1
 0
 0
 """
+
+
+def critical_leaves(certificate):
+    """(low corner, size, sign) of leaves with a sign and no slope, in units of the finest cells."""
+    text, found = iter(certificate["octree"]), []
+
+    def visit(low, size):
+        letter = next(text)
+        if letter == "(":
+            for child in range(8):
+                visit(tuple(low[a] + (child >> a & 1) * size // 2 for a in range(3)), size // 2)
+        elif (ord(letter) - 97) % 7 == 0 and letter != "h":
+            found.append((low, size, (ord(letter) - 97) // 7 - 1))
+
+    visit((0, 0, 0), 1 << certificate["grid"]["resolution"])
+    return found
 
 
 class Elements(html.parser.HTMLParser):
@@ -92,6 +109,10 @@ class ViewTest(unittest.TestCase):
     def write(self, name, text):
         with open(self.path(name), "w", encoding="utf-8") as file:
             file.write(text)
+
+    def load(self, name):
+        with open(self.path(name), encoding="utf-8") as file:
+            return json.load(file)
 
     def run_certa(self, *arguments, **options):
         return subprocess.run([CERTA, *arguments], capture_output=True, cwd=self.folder, timeout=300, **options)
@@ -234,7 +255,86 @@ class ViewTest(unittest.TestCase):
         self.assertEqual(report["page"]["bytes"], len(text))
         self.assertEqual(report["output"], {"path": "page.html", "format": "html"})
         help_text = self.expect(0, "view", "--help").stdout.decode()
-        self.assertIn("Example:\n  certa view ", help_text)
+        self.assertIn("Examples:\n  certa view ", help_text)
+
+    def test_critical_clusters_of_a_certificate(self):
+        """Boxes and clusters as decoded here, by brute force, from what docs/formats.md says of octrees."""
+        for name, function in (("torus", "(x^2+y^2+z^2+0.84)^2 - 4*(x^2+y^2)"), ("spheres", "((x-0.7)^2+y^2+z^2-0.2)*((x+0.7)^2+y^2+z^2-0.2)")):
+            with self.subTest(name=name):
+                self.expect(0, "implicit", function, "-o", "s.off", "--certificate", "s.json", "--json", "report.json", "--no-verify")
+                certificate, report = self.load("s.json"), self.load("report.json")
+                factors = certificate.get("factors", [certificate])
+                leaves = [(f,) + leaf for f, factor in enumerate(factors) for leaf in critical_leaves(factor)]
+                groups = list(range(len(leaves)))
+                for i, j in itertools.combinations(range(len(leaves)), 2):
+                    (f, a, m, _), (g, b, n, _) = leaves[i], leaves[j]
+                    if f == g and groups[i] != groups[j] and all(p <= q + n and q <= p + m for p, q in zip(a, b)):
+                        groups = [groups[i] if group == groups[j] else group for group in groups]
+                page = self.view("s.off", "s.json")
+                model = page.models[1]
+                self.assertTrue(model["overlay"])
+                self.assertEqual(model["counts"]["boxes"], len(leaves))
+                self.assertEqual(model["counts"]["clusters"], len(set(groups)))
+                if len(factors) == 1:
+                    self.assertEqual(report["statistics"]["clusters"], len(set(groups)))
+                signs = page.numbers(page.field(1, "sign", "polygons")["array"])
+                boxes = page.numbers(page.field(1, "box", "polygons")["array"])
+                clusters = page.numbers(page.field(1, "cluster", "polygons")["array"])
+                self.assertEqual({(b, s) for b, s in zip(boxes, signs)} - {(i + 1, leaf[3]) for i, leaf in enumerate(leaves)}, set())
+                # One cluster's faces: the area of the boundary of its boxes, where these have one size.
+                for number in set(clusters):
+                    own = [leaf for leaf, group in zip(leaves, groups) if group == groups[boxes[clusters.index(number)] - 1]]
+                    if len({leaf[2] for leaf in own}) > 1:
+                        continue
+                    cells = {leaf[1] for leaf in own}
+                    size = own[0][2]
+                    free = sum(tuple(c + (step if k == axis else 0) for k, c in enumerate(cell)) not in cells
+                               for cell in cells for axis in range(3) for step in (-size, size))
+                    self.assertEqual(clusters.count(number), free)
+
+    def test_undecided_boxes_of_a_report(self):
+        for function, code, reason in (("x^2+y^2-z^2", 4, 1), ("x^2+y^2-1", 4, 2)):
+            with self.subTest(function=function):
+                self.expect(code, "implicit", function, "--json", "report.json")
+                obstacles = self.load("report.json")["obstacles"]
+                page = self.view("report.json")
+                model = page.models[0]
+                self.assertTrue(model["overlay"])
+                self.assertEqual(model["counts"]["boxes"], len(obstacles))
+                self.assertEqual(set(page.numbers(page.field(0, "reason", "polygons")["array"])), {reason})
+                self.assertEqual(len(page.numbers(page.field(0, "box", "polygons")["array"])), 6 * len(obstacles))
+                self.assertEqual(page.numbers(page.field(0, "reason", "vertices")["array"]).count(reason), len(obstacles))
+                self.assertEqual(model["counts"]["segments"], 12)  # the box of the problem
+
+    def test_other_json_is_refused(self):
+        grid = '"grid":{"first":[-2,-2,-2],"count":[4,4,4],"exponent":[0,0,0],"resolution":2}'
+        for text in ("{}", "[]", "[", "", '{"command":"conform"}', '{"format":"certa implicit certificate"}', '{"format":"certa implicit product","factors":[]}',
+                     '{"command":"implicit","obstacles":[],"box":{"low":[0,0],"high":[1,1,1]}}',
+                     *('{"format":"certa implicit certificate",%s,"octree":"%s"}' % (grid, tree) for tree in ("", "(abc", "(((((((((", "?", "(zzzzzzzz"))):
+            with self.subTest(text=text):
+                self.write("odd.json", text)
+                self.assertIn(b"odd.json", self.expect(3, "view", "odd.json", "-o", "page.html").stderr)
+
+    def test_protecting_balls_and_shield_edges(self):
+        if b"conform" not in self.expect(0, "--help").stdout:
+            self.skipTest("this certa has no conform")
+        self.write("wedge.off", "OFF\n6 2 0\n0 0 0\n0 0 1\n3 0 0.2\n3 0 0.9\n3 0.4 0.1\n3 0.4 0.8\n4 0 2 3 1\n4 0 4 5 1\n")
+        self.expect(0, "conform", "wedge.off", "-o", "plain.vtu")
+        self.assertNotIn("balls", self.view("plain.vtu").models[0]["counts"])
+        self.expect(0, "conform", "wedge.off", "--protect", "all", "-o", "wedge.mesh")  # which has no room for them
+        self.expect(0, "conform", "wedge.off", "--protect", "all", "-o", "wedge.vtu", "--json", "report.json")
+        page = self.view("wedge.vtu")
+        model = page.models[0]
+        self.assertEqual(model["counts"]["balls"], self.load("report.json")["statistics"]["protecting_balls"])
+        radii = page.numbers(page.field(0, "ball_radius", "vertices")["array"])
+        places = list(zip(*[iter(page.numbers(model["positions"]))] * 3))
+        balls = [(places[v], radius / model["scale"]) for v, radius in enumerate(radii) if radius > 0]
+        self.assertEqual(len(balls), model["counts"]["balls"])
+        shields = page.numbers(model["shields"])
+        self.assertEqual(len(shields), 2 * model["counts"]["shields"])
+        self.assertGreaterEqual(model["counts"]["shields"], 2 * 4)  # each corner of both facets has one
+        for a, b in zip(shields[::2], shields[1::2]):
+            self.assertTrue(any(abs(math.dist(places[a], c) - r) < 1e-5 and abs(math.dist(places[b], c) - r) < 1e-5 for c, r in balls))
 
 
 if __name__ == "__main__":

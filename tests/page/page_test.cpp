@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "page/json_text.h"
+#include "page/shield_edges.h"
 #include "page/template.h"
 
 namespace {
@@ -125,6 +126,27 @@ TEST(JsonText, StringsAreSafeInHtmlAndAlwaysUtf8) {
     EXPECT_EQ(page::json_string("\xED\xA0\x80"), "\"\\ufffd\\ufffd\\ufffd\"");
     EXPECT_EQ(page::json_number(0.1), "0.1");
     EXPECT_EQ(page::json_number(5e-324), "5e-324");
+}
+
+/// A facet with one protected corner: its isosceles triangle, a right-angled one, and one that only shares the corner.
+TEST(ShieldEdges, AreOppositeTheCentresOfBalls) {
+    MeshDocument document;
+    document.complex.positions = {{0, 0, 0}, {2, 0, 0}, {0, 2, 0}, {1, 0, 0}, {3, 3, 0}, {-2, 0, 0}};
+    const auto v = [](std::uint32_t i) { return VertexId{i}; };
+    for (const auto& [a, b, c] : {std::array{0U, 1U, 2U}, {3U, 2U, 0U}, {1U, 4U, 2U}, {0U, 2U, 5U}, {2U, 1U, 0U}})
+        add_facet(document.complex, {{v(a), v(b), v(c)}});
+    EXPECT_TRUE(page::find_shield_edges(document).empty());
+    document.fields = {{"ball_radius", Location::vertices, 1, std::vector<double>{2, 0, 0, 0, 0, 0}}};
+    EXPECT_EQ(page::find_shield_edges(document), (std::vector<std::uint32_t>{1, 2, 2, 5}));
+    document.fields = {{"ball_radius", Location::vertices, 1, std::vector<double>{1.999, 0, 0, 0, 0, 0}}};
+    EXPECT_TRUE(page::find_shield_edges(document).empty());
+}
+
+TEST(FormatView, OverlaysSaySo) {
+    ViewModel model = make_tetrahedron();
+    EXPECT_EQ(format_view(std::array{model}).find("\"overlay\""), std::string::npos);
+    model.is_overlay = true;
+    EXPECT_NE(format_view(std::array{model}).find("\"overlay\":true"), std::string::npos);
 }
 
 }  // namespace

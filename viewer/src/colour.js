@@ -78,13 +78,14 @@ export function css([r, g, b]) {
 /// What the numbers of some labels mean, and which of the theme's colours they have.
 const MEANINGS = {
   source_kind: { names: { 0: 'input', 1: 'on a segment', 2: 'in a facet' } },
-  family: { names: { 1: 'lines of k_min', 2: 'lines of k_max' }, colours: { 1: 0, 2: 1 } },
-  umbilic_half_turns: { names: { 1: 'wedge umbilic', '-1': 'trisector umbilic' }, colours: { 1: 3, '-1': 4 } },
+  family: { names: { 1: 'along k_min', 2: 'along k_max' }, colours: { 1: 0, 2: 1 } },
+  umbilic_half_turns: { names: { 1: 'wedge', '-1': 'trisector' }, colours: { 1: 3, '-1': 4 } },
   sign: { names: { '-1': 'f < 0', 1: 'f > 0' }, colours: { '-1': 0, 1: 1 } },
   reason: {
     names: {
       1: 'singular', 2: 'meets the box', 3: 'tangent to the box', 4: 'undefined', 5: 'precision', 6: 'budget', 7: 'cancelled',
     },
+    colours: { 1: 1 },
   },
 };
 
@@ -98,5 +99,7 @@ export function labelName(field, value) {
 /// The colours of a label's categories; `strong` are those of the theme that stand out from any surface.
 export function coloursOf(field, strong) {
   const chosen = MEANINGS[field.name]?.colours ?? {};
-  return Array.from(field.categories, (value, i) => strong[chosen[value]] ?? labelColour(i));
+  // Faces and places of boxes have one colour, though only places have a 0.
+  const byValue = ['cluster', 'reason'].includes(field.name);
+  return Array.from(field.categories, (value, i) => strong[chosen[value]] ?? labelColour(byValue ? Math.max(0, value - 1) : i));
 }

@@ -45,7 +45,7 @@ class Field {
   }
   /// The label whose vertices are not shown as points: those of the input, or of no umbilic, say nothing.
   get hides() {
-    return ['source_kind', 'umbilic_half_turns'].includes(this.name) && this.location === 'vertices' ? 0 : null;
+    return ['source_kind', 'umbilic_half_turns', 'cluster', 'reason'].includes(this.name) && this.location === 'vertices' ? 0 : null;
   }
   /// Distinct values in ascending order, for labels.
   get categories() {
@@ -119,10 +119,16 @@ export class Model {
   get hasSurface() {
     return this.counts.polygons > 0;
   }
-  /// Half the diagonal of the box, in the units of `positions`.
+  /// Of a ball around the middle of the box that holds the model, in the units of `positions`.
   get radius() {
-    const [hx, hy, hz] = this.halfExtents;
-    return Math.hypot(hx, hy, hz) || 1;
+    if (this.reach === undefined) {
+      // Stray points may lie outside the box, which is that of the elements.
+      const corner = Math.hypot(...this.halfExtents), p = this.positions;
+      let most = 0;
+      for (let i = 0; i < p.length; i += 3) most = Math.max(most, p[i] * p[i] + p[i + 1] * p[i + 1] + p[i + 2] * p[i + 2]);
+      this.reach = Math.min(corner, Math.sqrt(most)) || 1;
+    }
+    return this.reach;
   }
   /// Boxes and lines say more on the surface that they belong to than alone.
   get wantsGround() {
@@ -132,6 +138,15 @@ export class Model {
   mapFrom(other) {
     const { origin, scale } = this.entry;
     return { shift: other.entry.origin.map((x, i) => (x - origin[i]) / scale), factor: other.entry.scale / scale };
+  }
+  /// A label of vertices that stand out whatever the colours show: umbilics, places of boxes.
+  get marks() {
+    const names = this.entry.overlay ? ['cluster', 'reason'] : ['umbilic_half_turns'];
+    return this.fields.find((field) => field.location === 'vertices' && field.isLabel && names.includes(field.name)) ?? null;
+  }
+  /// The file's name up to its extension.
+  get stem() {
+    return this.name.replace(/\.[^.]*$/, '');
   }
   /// Vertices with a protecting ball.
   get balls() {

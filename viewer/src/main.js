@@ -8,6 +8,7 @@ import { frameOf, Stage } from './scene.js';
 import { hashOf, stateOf } from './state.js';
 
 const MANY_TRIANGLES = 200000;
+const FEW_CLUSTERS = 10;
 const THEMES = {
   light: {
     surface: [196, 208, 220], inside: [232, 190, 132], edge: [38, 52, 68], sharp: [40, 54, 70], segment: [26, 44, 66], point: [214, 92, 54], missing: [205, 208, 212],
@@ -76,7 +77,7 @@ class App {
     const range = automaticRange ? this.rangeOf(field) : state.range;
     const directions = this.directionSlots(model);
     const ground = this.groundOf(model);
-    const marks = field?.isLabel && field.location === 'vertices' ? field : model.field('umbilic_half_turns') ?? null;
+    const marks = field?.isLabel && field.location === 'vertices' ? field : model.marks;
     return {
       ground, marks, groundAs: state.groundAs ?? (model.hasSurface ? 'glass' : 'solid'), balls: model.balls !== null && state.balls !== false,
       directions, model, solid, field, range, automaticRange, up,
@@ -84,7 +85,7 @@ class App {
       map: MAPS[state.map] ? state.map : field && this.crossesZero(field) ? 'tide' : 'dusk',
       edges: state.edges ?? (model.counts.polygons > MANY_TRIANGLES || directions.some(Boolean) || (ground && !model.hasSurface) ? 'sharp' : 'all'),
       // Where nearly every edge is a segment, drawing them says nothing.
-      segments: state.segments ?? model.counts.segments < 0.5 * (model.counts.polygons || Infinity),
+      segments: state.segments ?? (model.entry.overlay ? !ground : model.counts.segments < 0.5 * (model.counts.polygons || Infinity)),
       points: state.points ?? (model.isPoint || marks !== null),
       density: state.density ?? 0.5,
       theme: state.theme ?? (this.systemTheme.matches ? 'dark' : 'light'),
@@ -93,12 +94,14 @@ class App {
     };
   }
 
-  /// The file whose surface is drawn under the model: the state's, else, for lines and boxes, the first one that has a surface.
+  /// The file whose surface is drawn under the model: the state's, else, for lines and boxes, one of the same name, else the first.
   groundOf(model) {
     const { models } = this.page;
     const fits = (one) => one && one !== model && !one.wantsGround;
     if (this.state.ground !== null) return fits(models[this.state.ground - 1]) ? models[this.state.ground - 1] : null;
-    return model.wantsGround ? models.find((one) => fits(one) && this.meet(model, one)) ?? null : null;
+    if (!model.wantsGround) return null;
+    const candidates = models.filter((one) => fits(one) && this.meet(model, one));
+    return candidates.find((one) => one.stem === model.stem) ?? candidates[0] ?? null;
   }
 
   /// Whether the boxes of two models have a point in common.
@@ -124,8 +127,10 @@ class App {
     if (this.state.colour === 'plain') return null;
     const named = this.state.colour ? model.field(this.state.colour) : null;
     if (named?.components === 1) return named;
-    const lines = model.field('family') ?? (model.entry.overlay ? model.field('cluster') ?? model.field('reason') : null);
-    if (lines) return lines;
+    // Few clusters are told apart, many by whether they lie inside or outside.
+    const clusters = model.field('cluster'), few = clusters && clusters.categories.length <= FEW_CLUSTERS;
+    const special = model.field('family') ?? (model.entry.overlay ? (clusters ? (few ? clusters : model.field('sign')) : model.field('reason')) : null);
+    if (special) return special;
     const candidates = model.fields.filter((one) => one.components === 1 && !one.isLabel && one.location === 'vertices' && one.name !== 'ball_radius');
     const numbers = candidates.find((one) => one.name === 'mean') ?? candidates[0];
     const labels = model.fields.filter((one) => one.isLabel && one.location === 'tetrahedra');

@@ -47,9 +47,9 @@ function section(title, ...children) {
 
 function countRows(model) {
   const { counts } = model;
-  const rows = [['vertices', counts.vertices], ['added', counts.added], [counts.triangles === counts.polygons ? 'triangles' : 'polygons', counts.polygons],
+  const rows = model.entry.overlay ? [['boxes', counts.boxes], ['clusters', counts.clusters]] : [['vertices', counts.vertices], ['added', counts.added], [counts.triangles === counts.polygons ? 'triangles' : 'polygons', counts.polygons],
     ['facets', counts.facets], ['segments', counts.segments], ['tetrahedra', counts.tetrahedra], ['regions', counts.regions > 1 ? counts.regions : 0],
-    ['umbilics', counts.umbilics], ['protecting balls', counts.balls], ['shield edges', counts.shields], ['boxes', counts.boxes], ['clusters', counts.clusters]];
+    ['umbilics', counts.umbilics], ['protecting balls', counts.balls], ['shield edges', counts.shields]];
   return rows.filter(([, count]) => count > 0).flatMap(([name, count]) => [element('dt', {}, name), element('dd', {}, grouped(count))]);
 }
 
@@ -121,7 +121,7 @@ export class Panel {
       element('option', { value: 0 }, 'nothing'), ...others.map((one) => element('option', { value: one.index + 1 }, one.name)));
     list.value = ground ? ground.index + 1 : 0;
     const row = (text, node) => element('div', { class: 'row' }, text, node);
-    return [row('On', list), ground ? row('as', pick([['solid', 'solid'], ['glass', 'glass']], groundAs, (as) => set({ groundAs: as }), 'How it is drawn')) : null];
+    return [row('Under it', list), ground ? row('as', pick([['solid', 'solid'], ['glass', 'glass']], groundAs, (as) => set({ groundAs: as }), 'How it is drawn')) : null];
   }
 
   colourSection(choice, set) {
@@ -234,12 +234,14 @@ function labelLegend(field, theme) {
   return [element('ul', { class: 'labels' }, ...items), ...(more > 0 ? [element('p', { class: 'beyond' }, `and ${grouped(more)} more`)] : [])];
 }
 
-const TITLES = { family: 'lines of curvature', umbilic_half_turns: 'umbilics', source_kind: 'added points', cluster: 'critical clusters', reason: 'undecided boxes' };
+const TITLES = { sign: 'critical clusters', family: 'lines of curvature', umbilic_half_turns: 'umbilics', source_kind: 'added points', cluster: 'critical clusters', reason: 'undecided boxes' };
 
 export function renderLegend(root, choice, theme) {
   const parts = [];
   const { field, marks, model } = choice;
-  for (const one of new Set([field, choice.points ? marks : null])) {
+  // Places of boxes have the boxes' colours.
+  const shown = [field, choice.points && !(model.entry.overlay && field) ? marks : null];
+  for (const one of new Set(shown)) {
     if (!one) continue;
     const title = TITLES[one.name];
     parts.push(element('h2', {}, title ?? one.name, ...(title ? [] : [' ', element('span', {}, PLACES[one.location])])));

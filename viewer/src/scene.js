@@ -241,7 +241,7 @@ export class Stage {
     material.uniforms.glass.value = glass ? 1 : 0;
     material.transparent = glass;
     material.depthWrite = !glass;
-    this.ground.renderOrder = glass ? 50 : 1;
+    this.ground.renderOrder = glass ? 8.5 : 1;  // as glass over lines, under points and balls
     const seen = new Uint8Array(positions.length / 3);
     for (const v of vertices) seen[v] = 1;
     this.showLines(this.groundSharp, { positions }, made.surface.sharp, () => NOTHING, seen);
@@ -491,7 +491,7 @@ export class Stage {
     setLine(this.segments, bare ? 1.8 : 1.6, bare ? 0 : 5, 0.2 * perPixel + (bare && ground ? (0.002 * view.radius) / view.length : 0));
     setLine(this.shields, 2, 4, 0.4 * perPixel);
     for (const mesh of this.directions) setLine(mesh, 1.6, 3, (0.006 * view.radius) / view.length);
-    this.points.material.uniforms.size.value = (this.choice.marks?.name === 'umbilic_half_turns' ? 10 : 7) * ratio;
+    this.points.material.uniforms.size.value = (this.choice.model.marks ? 10 : 7) * ratio;
     this.points.material.uniforms.lift.value = 5 * perPixel + (ground ? (0.004 * view.radius) / view.length : 0);
     view.apply(width, height);
     this.renderer.render(this.scene, view.camera);
