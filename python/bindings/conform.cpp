@@ -81,7 +81,7 @@ py::dict mesh_to_python(TetMesh&& mesh) {
     return out;
 }
 
-py::dict conform_to_python(const py::object& object, py::dict given, bool verify, const std::string& reference,
+py::dict conform_to_python(const py::object& object, const py::dict& given, bool verify, const std::string& reference,
                            const py::object& progress, unsigned threads) {
     ConformOptions options;
     set_options(frontend::conform_options(), options, given);

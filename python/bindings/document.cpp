@@ -81,23 +81,6 @@ void add_shape(const py::handle& object, MeshDocument& document) {
         elements_from<Tetrahedron>(py::cast<Integers>(object.attr("tetrahedra")), ElementKind::tetrahedron, count);
 }
 
-py::dict fields_to_python(std::vector<Field>&& fields) {
-    py::dict places;
-    for (const char* name : location_names) places[name] = py::dict();
-    for (Field& field : fields) {
-        const py::ssize_t width = field.components == 1 ? 0 : static_cast<py::ssize_t>(field.components);
-        auto place = places[location_names[static_cast<std::size_t>(field.location)]].cast<py::dict>();
-        place[text(field.name)] = std::visit(
-            [&](auto& values) {
-                using Number = typename std::decay_t<decltype(values)>::value_type;
-                py::array array = take<Number>(std::move(values));
-                return width == 0 ? array : array.reshape({array.size() / width, width});
-            },
-            field.values);
-    }
-    return places;
-}
-
 std::optional<Format> format_from(const py::object& name) {
     if (name.is_none()) return std::nullopt;
     const auto given = py::cast<std::string>(name);
@@ -114,7 +97,7 @@ py::dict read(const std::string& path, const py::object& format) {
     return to_python(run({py::none(), 0}, [&](const RunControl&) { return read_document(path, options); }));
 }
 
-void write(const std::string& path, const py::object& object, const py::object& format, py::dict given) {
+void write(const std::string& path, const py::object& object, const py::object& format, const py::dict& given) {
     frontend::OutputOptions output;
     set_options(frontend::output_options().first(2), output, given);
     const MeshDocument document = document_from(object);
@@ -127,6 +110,23 @@ void write(const std::string& path, const py::object& object, const py::object& 
 }
 
 }  // namespace
+
+py::dict fields_to_python(std::vector<Field>&& fields) {
+    py::dict places;
+    for (const char* name : location_names) places[name] = py::dict();
+    for (Field& field : fields) {
+        const py::ssize_t width = field.components == 1 ? 0 : static_cast<py::ssize_t>(field.components);
+        auto place = places[location_names[static_cast<std::size_t>(field.location)]].cast<py::dict>();
+        place[text(field.name)] = std::visit(
+            [&](auto& values) {
+                using Number = typename std::decay_t<decltype(values)>::value_type;
+                py::array array = take<Number>(std::move(values));
+                return width == 0 ? array : array.reshape({array.size() / width, width});
+            },
+            field.values);
+    }
+    return places;
+}
 
 MeshDocument document_from(py::handle object) {
     MeshDocument document;

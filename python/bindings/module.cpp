@@ -9,6 +9,12 @@ PYBIND11_MODULE(_certa, module) {
     add_errors(module);
     add_documents(module);
     add_conform(module);
+    add_curvature(module);
+    add_remesh(module);
+    add_expressions(module);
+    add_implicit(module);
+    add_checks(module);
+    add_views(module);
     module.attr("version") = CERTA_VERSION;
     py::dict tables;
     tables["conform"] = describe_options(frontend::conform_options());

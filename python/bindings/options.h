@@ -32,16 +32,15 @@ void set_flag(const frontend::Option<Options>& option, Options& options, bool va
 
 constexpr double degree = std::numbers::pi / 180.0;
 
-/// Sets the options that `given` names and removes them from it. None leaves an option as it is by default.
+/// Sets the options that `given` names. None leaves an option as it is by default.
 ///
 /// Errors: OptionError, with the name that the option has in Python in front.
 template <class Options>
-void set_options(std::span<const frontend::Option<Options>> table, Options& options, py::dict& given) {
+void set_options(std::span<const frontend::Option<Options>> table, Options& options, const py::dict& given) {
     for (const auto& option : table) {
         const py::str name(std::string(option.name));
         if (!given.contains(name)) continue;
         const py::object value = given[name];
-        PyDict_DelItem(given.ptr(), name.ptr());
         if (value.is_none()) continue;
         if (frontend::is_flag(option)) {
             set_flag(option, options, option_flag(option.name, value));

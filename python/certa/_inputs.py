@@ -1,11 +1,12 @@
 """Takes what Python programs have at hand: arrays of any kind and order, nested lists, data frames, other packages'
 meshes. What comes out are contiguous arrays of the library's own types; nothing is rounded or reordered."""
 
+import numbers
 import os
 
 import numpy
 
-NO_CORNERS = numpy.zeros((0, 2), dtype=numpy.int64)
+_ROUNDED = "some numbers are no doubles, and nothing is rounded silently; round them yourself"
 
 
 def _array(values, what):
@@ -17,17 +18,31 @@ def _array(values, what):
         if not hasattr(values, "__iter__"):
             raise TypeError(f"{what}: expected an array of numbers, not {type(values).__name__}")
         values = list(values)  # a generator
-    array = numpy.asarray(values)
-    if array.dtype.kind == "O":  # numbers of several kinds, integers beyond 64 bits, None
-        try:
-            array = numpy.asarray(array.tolist(), dtype=numpy.float64)
-        except (TypeError, ValueError, OverflowError):
-            raise TypeError(f"{what}: expected numbers, but some entries are none") from None
+    try:
+        array = numpy.asarray(values)
+    except ValueError:
+        raise ValueError(f"{what}: the rows have different lengths") from None
+    if array.dtype.kind == "O":
+        array = _from_objects(array, what)
     if array.size == 0 and array.dtype.kind not in "iuf":
         array = array.astype(numpy.float64)
     if array.dtype.kind not in "iuf":
         raise TypeError(f"{what}: expected real numbers, not an array of {array.dtype}")
     return array
+
+
+def _from_objects(array, what):
+    """Numbers of several kinds, among them integers beyond 64 bits."""
+    entries = array.reshape(-1).tolist()
+    if not all(isinstance(entry, numbers.Real) and not isinstance(entry, bool) for entry in entries):
+        raise TypeError(f"{what}: expected numbers, but some entries are none")
+    try:
+        converted = [float(entry) for entry in entries]
+    except OverflowError:
+        raise ValueError(f"{what}: some numbers are too large for doubles") from None
+    if any(a != b and a == a for a, b in zip(converted, entries)):
+        raise ValueError(f"{what}: {_ROUNDED}")
+    return numpy.array(converted, dtype=numpy.float64).reshape(array.shape)
 
 
 def doubles(values, width, what):
@@ -45,8 +60,9 @@ def doubles(values, width, what):
     if not width and array.ndim != 1:
         raise ValueError(f"{what}: expected a flat array, not shape {array.shape}")
     exact = numpy.ascontiguousarray(array, dtype=numpy.float64)
-    if array.dtype.itemsize >= 8 and array.dtype != numpy.float64 and not numpy.array_equal(exact, array, equal_nan=array.dtype.kind == "f"):
-        raise ValueError(f"{what}: some numbers of type {array.dtype} are no doubles, and nothing is rounded silently")
+    if array.dtype.itemsize >= 8 and array.dtype.newbyteorder("=") != numpy.float64:
+        if not numpy.array_equal(exact.astype(array.dtype), array, equal_nan=array.dtype.kind == "f"):
+            raise ValueError(f"{what}: {_ROUNDED}")
     return exact
 
 

@@ -75,7 +75,7 @@ def documented(*tables, without=()):
 
         checked.__signature__ = plain.replace(parameters=fixed + keywords)
         entries = "\n".join(describe(row) for row in rows if row["name"] in names)
-        checked.__doc__ = inspect.cleandoc(function.__doc__).replace("{options}", entries)
+        checked.__doc__ = inspect.cleandoc(function.__doc__).replace("{options}", entries).replace("{{", "{").replace("}}", "}")
         return checked
 
     return decorate

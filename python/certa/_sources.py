@@ -1,18 +1,23 @@
 """One document from whatever a caller passes as a mesh."""
 
+import os
+
+import numpy
+
 from . import _certa, _inputs
 from ._document import MeshDocument
 
 
 def as_document(mesh, faces=None, *, segments=None, name="mesh"):
     """A certa.MeshDocument of an object, of (positions, faces), or of the file at a path."""
-    document = _document_of(mesh, faces, name)
+    # Points with segments need no faces.
+    document = _document_of(mesh, () if faces is None and segments is not None and _is_rows(mesh) else faces, name)
     if segments is None:
         return document
     more = _inputs.elements(segments, 2, "segments")
     if len(document.segment_markers):
         raise ValueError("segments: the mesh has segments with markers; make a certa.MeshDocument of all of them")
-    return replaced(document, segments=_inputs.numpy.concatenate([document.segments, more]))
+    return replaced(document, segments=numpy.concatenate([document.segments, more]))
 
 
 def replaced(document, **attributes):
@@ -20,6 +25,11 @@ def replaced(document, **attributes):
     copy = MeshDocument.__new__(MeshDocument)
     copy.__dict__.update(document.__dict__, **attributes)
     return copy
+
+
+def _is_rows(mesh):
+    """Rows of three numbers rather than (positions, faces)."""
+    return hasattr(mesh, "__array__") or (isinstance(mesh, (tuple, list)) and (len(mesh) > 2 or numpy.ndim(mesh[0]) == 1))
 
 
 def _document_of(mesh, faces, name):
@@ -62,3 +72,52 @@ def watch(progress, threads):
     if not 1 <= count <= 4096:
         raise ValueError(f"threads: {count} is out of range; allowed is [1, 4096]")
     return progress, count
+
+
+def box_of(box, around=None):
+    """Six numbers, low and high corner; without a box, one around points with room on each side."""
+    if box is None:
+        if len(around) == 0:
+            raise ValueError("an empty mesh has no place: give the box")
+        low, high = around.min(axis=0), around.max(axis=0)
+        size = (high - low).max()
+        # No power of 2 divides these: grids are not aligned with the cells of the proof then.
+        low = low - size * numpy.array([0.1537, 0.1619, 0.1471])
+        high = high + size * numpy.array([0.1723, 0.1511, 0.1673])
+        return numpy.concatenate([low, high])
+    corners = _inputs.doubles(numpy.asarray(box, dtype=object).reshape(-1).tolist(), 0, "box")
+    if corners.shape != (6,):
+        raise ValueError(f"box: expected a low and a high corner, six numbers in all, not {len(corners)}")
+    return corners
+
+
+def available_memory():
+    """Bytes that are free on this machine and in this control group; None where nobody knows."""
+    limits = []
+    try:
+        with open("/proc/meminfo", encoding="ascii") as file:
+            limits += [int(line.split()[1]) * 1024 for line in file if line.startswith("MemAvailable:")]
+        with open("/sys/fs/cgroup/memory.max", encoding="ascii") as limit:
+            with open("/sys/fs/cgroup/memory.current", encoding="ascii") as used:
+                limits.append(max(0, int(limit.read()) - int(used.read())))
+    except (OSError, ValueError):  # not mounted, or "max"
+        pass
+    return min(limits, default=None)
+
+
+def named_models(models, names):
+    """(name, document) of each model; names are file names, or numbers."""
+    pairs = []
+    for i, model in enumerate(models):
+        if isinstance(model, tuple) and len(model) == 2 and isinstance(model[0], str) and not isinstance(model[1], str):
+            name, model = model
+        elif _inputs.is_path(model):
+            name = os.path.basename(os.fsdecode(model)).encode("utf-8", "replace").decode()
+        else:
+            name = type(model).__name__.replace("Result", "").lower() if hasattr(model, "document") else f"mesh {i + 1}"
+        pairs.append((name, as_document(model, name=f"model {i + 1}")))
+    if names is not None:
+        if len(names) != len(pairs):
+            raise ValueError(f"names: {len(names)} names for {len(pairs)} models")
+        pairs = [(str(name), document) for name, (_, document) in zip(names, pairs)]
+    return pairs

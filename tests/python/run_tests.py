@@ -13,6 +13,7 @@ sys.path.insert(0, package)
 # Interpreters that tests start find the same package.
 os.environ["PYTHONPATH"] = package
 os.environ["PYTHONDONTWRITEBYTECODE"] = "1"
+os.environ["CERTA_EXAMPLES"] = os.path.join(os.path.dirname(os.path.dirname(os.path.abspath(tests))), "examples", "python")
 
 try:
     import hypothesis
