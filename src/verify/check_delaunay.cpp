@@ -2,10 +2,18 @@
 // Where the tetrahedra are proved to fill the convex hull face to face with every vertex used (check_domain), the
 // Delaunay lemma needs one test per inner face: a triangulation of a convex domain in which no vertex lies strictly
 // inside the circumsphere of the tetrahedron across a face of its own is Delaunay, because the lifting to the
-// paraboloid is then convex across every face, hence convex. Elsewhere local tests prove nothing: every circumball is
-// searched among all vertices.
+// paraboloid is then convex across every face, hence convex.
 //
-// The search also proves that the tetrahedra do not overlap. Two tetrahedra with empty open circumballs and different
+// Where they are proved to overlap nowhere (check_embedding), with every vertex used, one test more is needed per
+// boundary face: no vertex may lie in the circumball of its tetrahedron beyond the face. For suppose that a vertex v
+// lies inside the circumball of t. Walk from a point inside t straight to v. From tetrahedron to tetrahedron v stays
+// inside the circumballs, as the next ball contains all of the last one beyond the face between them. The walk cannot
+// end in a tetrahedron: v is no corner of it, being inside its ball, and lies in no other. So it leaves through a
+// boundary face, with v beyond it and inside the ball.
+//
+// Elsewhere local tests prove nothing: every circumball is searched among all vertices.
+//
+// That search also proves that the tetrahedra do not overlap. Two tetrahedra with empty open circumballs and different
 // circumspheres lie on different sides of the spheres' radical plane: at a vertex of the first its own power is 0 and
 // that of the second at least 0, and vice versa. Only tetrahedra on one common sphere can still overlap. Where
 // tetrahedra overlap, the set of points covered twice ends at the boundary of the chain of all tetrahedra (inner faces
@@ -26,6 +34,35 @@ void add_encroachment(const Subject& subject, std::uint32_t tetrahedron, std::ui
                  show("vertex", vertex) + " at " + show(subject.at(vertex)) +
                      " is strictly inside the circumsphere of " + show("tetrahedron", tetrahedron) + " of " +
                      show_vertices({index_of(t[0]), index_of(t[1]), index_of(t[2]), index_of(t[3])}));
+}
+
+/// The part of a ball beyond a plane.
+struct Cap {
+    QuadricRegion ball, beyond;
+
+    int side(const Point3& p) const {
+        const int past = beyond.side(p);
+        return past > 0 ? std::min(past, ball.side(p)) : past;
+    }
+    bool misses_box(const Point3& low, const Point3& high, bool closed) const {
+        return beyond.misses_box(low, high, closed) || ball.misses_box(low, high, closed);
+    }
+};
+
+void check_caps(const Subject& subject, const Domain& domain, Findings& findings) {
+    for_each_item(domain.boundary.size(), subject.control, findings, [&](std::size_t i, Findings& found) {
+        if (domain.on_hull[i]) return;
+        const HalfFace h = domain.boundary[i];
+        const auto f = outward_face(subject.mesh, h);
+        const Point3 &a = subject.at(f[0]), &b = subject.at(f[1]), &c = subject.at(f[2]);
+        const Point3& apex = subject.at(apex_of(subject.mesh, h));
+        const std::array<std::uint32_t, 4> corners{f[0], f[1], f[2], apex_of(subject.mesh, h)};
+        subject.tree.visit(Cap{QuadricRegion::circumball(a, c, b, apex), QuadricRegion::beyond(a, b, c)}, corners,
+                           false, [&](std::uint32_t vertex, int) {
+                               add_encroachment(subject, h / 4, vertex, found);
+                               return false;
+                           });
+    });
 }
 
 void check_locally(const Subject& subject, Findings& findings) {
@@ -158,8 +195,9 @@ void check_everywhere(const Subject& subject, Findings& findings) {
 }  // namespace
 
 void check_delaunay(const Subject& subject, const Domain& domain, Findings& findings) {
-    if (domain.full_hull) {
+    if (domain.embedded) {
         check_locally(subject, findings);
+        if (!domain.full_hull) check_caps(subject, domain, findings);
     } else {
         check_everywhere(subject, findings);
     }

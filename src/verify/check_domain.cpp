@@ -13,7 +13,8 @@
 // other, n >= 2. Planes are tested once per cluster of exactly coplanar neighbours, and not at all next to a reflex
 // edge.
 //
-// Otherwise overlaps are excluded by the search for circumballs (check_delaunay), n is 0 or 1, and what is left to show
+// Otherwise overlaps are excluded by the boundary (check_embedding) or, where that is not embedded, by the search for
+// circumballs (check_delaunay), n is 0 or 1, and what is left to show
 // is that K ends where it may: each boundary face is a constraint triangle or has no vertex beyond its plane (here),
 // and the bounded components of the rest of space are regions that a hole point lies in (check_regions).
 #include <algorithm>
@@ -212,8 +213,9 @@ Domain check_domain(const Subject& subject, Findings& findings) {
     bool all_used = true;
     for (std::size_t v = 0; v < subject.used.size(); ++v) all_used = all_used && (subject.used[v] || subject.spare[v]);
     const bool all_on_hull = std::find(domain.on_hull.begin(), domain.on_hull.end(), 0) == domain.on_hull.end();
-    domain.full_hull = domain.matched && findings.count(Promise::well_formed) == 0 && all_used && all_on_hull &&
-                       covers_once(subject, findings);
+    const bool usable = domain.matched && findings.count(Promise::well_formed) == 0 && all_used;
+    domain.full_hull = usable && all_on_hull && covers_once(subject, findings);
+    domain.embedded = domain.full_hull || (usable && !all_on_hull && is_embedded(subject, domain));
     return domain;
 }
 

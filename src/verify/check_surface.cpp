@@ -54,22 +54,7 @@ std::vector<Contact> list_contacts(const PolygonSurface& surface, const RunContr
         }
     }
     const auto do_meet = [&](const Entry& s, const Entry& t) {
-        verify::Corners a = surface.points(s.corners), b = surface.points(t.corners);
-        std::size_t shared = 0;
-        PolygonSurface::Corners first = s.corners, second = t.corners;
-        for (std::size_t i = 0; i < 3; ++i)
-            for (std::size_t j = shared; j < 3; ++j) {
-                if (second[j] != s.corners[i]) continue;
-                const auto at = std::find(first.begin() + static_cast<std::ptrdiff_t>(shared), first.end(), second[j]);
-                std::swap(first[shared], *at);
-                std::swap(second[shared], second[j]);
-                ++shared;
-                break;
-            }
-        a = surface.points(first), b = surface.points(second);
-        if (shared == 3) return true;
-        if (shared == 2) return verify::meet_beyond_edge(a, b);
-        return shared == 1 ? verify::meet_beyond_corner(a, b) : verify::triangles_meet(a, b);
+        return verify::meet_beyond_shared(surface.positions(), s.corners, t.corners);
     };
     const verify::BoxTree tree(boxes);
     constexpr std::size_t block = 1024;

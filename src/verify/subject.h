@@ -51,6 +51,7 @@ struct Subject {
 struct Domain {
     bool matched = false;            ///< faces are shared by at most two tetrahedra, from both sides; all are positive
     bool full_hull = false;          ///< they fill the convex hull of all vertices exactly once: proved
+    bool embedded = false;           ///< they overlap nowhere, and every vertex is a corner of one: proved
     bool keeps_outside = false;      ///< some boundary face is no constraint
     std::vector<HalfFace> boundary;  ///< ascending
     std::vector<std::uint8_t> on_hull;  ///< per entry of `boundary`: no vertex lies beyond its plane
@@ -64,6 +65,8 @@ void check_tetrahedra(Subject& subject, Findings& findings);
 /// Marks the half-faces on constraint triangles.
 void mark_walls(Subject& subject, Findings& findings);
 Domain check_domain(const Subject& subject, Findings& findings);
+/// Whether tetrahedra with matched faces overlap nowhere; false: not proved.
+bool is_embedded(const Subject& subject, const Domain& domain);
 void check_delaunay(const Subject& subject, const Domain& domain, Findings& findings);
 Chains check_segments(const Subject& subject, Findings& findings);
 /// Returns the largest distance of an added vertex from what carries it.

@@ -97,6 +97,25 @@ bool meet_beyond_edge(const Corners& s, const Corners& t) {
     return area_sign(s[0], s[1], s[2], axis) == area_sign(s[0], s[1], t[2], axis);
 }
 
+bool meet_beyond_shared(const std::vector<Point3>& positions, std::array<std::uint32_t, 3> s,
+                        std::array<std::uint32_t, 3> t) {
+    std::size_t shared = 0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        for (std::size_t k = shared; k < 3; ++k) {
+            if (s[i] != t[k]) continue;
+            std::swap(s[i], s[shared]);
+            std::swap(t[k], t[shared]);
+            ++shared;
+            break;
+        }
+    }
+    if (shared == 3) return true;
+    const Corners a{positions[s[0]], positions[s[1]], positions[s[2]]},
+        b{positions[t[0]], positions[t[1]], positions[t[2]]};
+    if (shared == 2) return meet_beyond_edge(a, b);
+    return shared == 1 ? meet_beyond_corner(a, b) : triangles_meet(a, b);
+}
+
 int crossing(const Point3& from, const Point3& to, const Corners& t) {
     const int start = orientation(t[0], t[1], t[2], from), end = orientation(t[0], t[1], t[2], to);
     if (start * end > 0) return 0;

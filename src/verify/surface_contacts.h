@@ -21,6 +21,10 @@ bool meet_beyond_corner(const Corners& s, const Corners& t);
 /// Whether triangles with the common edge s[0] s[1] = t[0] t[1] share a point off it.
 bool meet_beyond_edge(const Corners& s, const Corners& t);
 
+/// Whether two triangles of a mesh, not degenerate, share a point beyond their common corners. One face twice does.
+bool meet_beyond_shared(const std::vector<Point3>& positions, std::array<std::uint32_t, 3> s,
+                        std::array<std::uint32_t, 3> t);
+
 /// How a segment crosses a triangle: +1 leaving through the side its normal points to, -1 the other way, 0 not at all;
 /// 2: through an edge or a corner, along it, or ending on it.
 int crossing(const Point3& from, const Point3& to, const Corners& t);

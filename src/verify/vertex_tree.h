@@ -18,8 +18,8 @@ public:
     /// Calls visit(vertex, side) for every vertex inside the region (side 1) and, with `closed`, on its boundary
     /// (side 0), until it returns false. The order is fixed by the positions. Vertices in `corners`, known to be on the
     /// boundary, are not visited.
-    template <std::size_t Count, class Visit>
-    void visit(const QuadricRegion& region, const std::array<std::uint32_t, Count>& corners, bool closed,
+    template <class Region, std::size_t Count, class Visit>
+    void visit(const Region& region, const std::array<std::uint32_t, Count>& corners, bool closed,
                const Visit& visit) const {
         if (nodes_.empty()) return;
         std::array<std::uint32_t, 64> stack;
