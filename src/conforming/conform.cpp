@@ -334,24 +334,41 @@ private:
         return true;
     }
 
+    static bool is_done(const Attempt* attempt) { return attempt != nullptr && attempt->end.outcome == Outcome::done; }
+
     /// Recovery of small complexes is cheap, and no split rule gives the fewest points everywhere: another one may also
     /// stay within max_points where the first does not.
     void try_other_rules(const Plan& plan, std::unique_ptr<Attempt>& best) {
-        const auto is_done = [](const Attempt& attempt) { return attempt.end.outcome == Outcome::done; };
         if (!plan.lazy || plan.protects || prepared_.complex.frames.size() > limits_.facets_for_trials) return;
         const bool hit_limit = best->end.outcome == Outcome::over_budget && !best->end.stuck;
-        if (!hit_limit && (!is_done(*best) || best->added() < limits_.added_for_trials)) return;
+        if (!hit_limit && (!is_done(best.get()) || best->added() < limits_.added_for_trials)) return;
         for (const SplitRule rule : {SplitRule::middle_first, SplitRule::shells}) {
             Plan other = plan;
             other.rule = rule;
-            if (is_done(*best)) other.most_added = best->added() - 1;
+            if (is_done(best.get())) other.most_added = best->added() - 1;
             std::unique_ptr<Attempt> attempt = try_plan(other);
             if (attempt->end.outcome == Outcome::cancelled) {
                 best = std::move(attempt);
                 return;
             }
-            if (is_done(*attempt) && (!is_done(*best) || attempt->added() < best->added())) best = std::move(attempt);
+            if (is_done(attempt.get()) && (!is_done(best.get()) || attempt->added() < best->added()))
+                best = std::move(attempt);
         }
+    }
+
+    /// Balls are little help where very many pages overlap in a narrow fan: as the first attempt, with more patience.
+    void try_patiently(Plan& plan, std::unique_ptr<Attempt>& attempt) {
+        if (options_.protection != Protection::needed || plan.restarts == 0 || is_done(attempt.get())) return;
+        if (result_.outcome == Outcome::cancelled || (attempt && attempt->end.outcome == Outcome::cancelled)) return;
+        const Plan patient{
+            .set = protect_nothing(prepared_.complex), .lazy = true, .restarts = limits_.doublings_at_last};
+        std::unique_ptr<Attempt> last = try_plan(patient);
+        if (!is_done(last.get()) && last->end.outcome != Outcome::cancelled) return;
+        plan = patient;
+        attempt = std::move(last);
+        result_.outcome = Outcome::done;
+        result_.obstacles.clear();
+        result_.statistics.protecting_balls = 0;
     }
 
     void recover() {
@@ -367,6 +384,7 @@ private:
             if (next == nullptr) break;
         }
         result_.statistics.restarts = plan.restarts;
+        try_patiently(plan, attempt);
         if (result_.outcome == Outcome::cancelled) return;
         if (!attempt || result_.outcome != Outcome::done) {
             if (attempt) emit_partial(attempt->mesh, attempt->recovery, result_);
