@@ -12,6 +12,16 @@ if(TARGET certa_cli)
   set_target_properties(certa_cli PROPERTIES INSTALL_RPATH "$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")
   install(TARGETS certa_cli RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 endif()
+if(CERTA_BUILD_PYTHON)
+  if(BUILD_SHARED_LIBS)
+    # The module finds the library wherever the prefix is moved to.
+    file(RELATIVE_PATH to_library /prefix/${CERTA_PYTHON_INSTALL_DIR}/certa /prefix/${CMAKE_INSTALL_LIBDIR})
+    set_target_properties(certa_python PROPERTIES INSTALL_RPATH "$ORIGIN/${to_library}")
+  endif()
+  install(TARGETS certa_python LIBRARY DESTINATION ${CERTA_PYTHON_INSTALL_DIR}/certa COMPONENT python)
+  install(DIRECTORY ${PROJECT_BINARY_DIR}/python/certa DESTINATION ${CERTA_PYTHON_INSTALL_DIR} COMPONENT python
+    FILES_MATCHING PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN __pycache__ EXCLUDE)
+endif()
 
 configure_package_config_file(${PROJECT_SOURCE_DIR}/cmake/CertaConfig.cmake.in ${PROJECT_BINARY_DIR}/CertaConfig.cmake
   INSTALL_DESTINATION ${certa_package_dir})

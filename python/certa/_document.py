@@ -1,6 +1,11 @@
 """Meshes as files say them: what `read` returns, what every function takes."""
 
+from __future__ import annotations
+
+from typing import Any, Dict, List, Optional, Union
+
 import numpy
+from numpy.typing import ArrayLike
 
 from . import _inputs
 
@@ -29,22 +34,40 @@ class MeshDocument:
     from 0 and are not allowed to be negative.
     """
 
+    positions: numpy.ndarray
+    corners: numpy.ndarray
+    polygon_offsets: numpy.ndarray
+    facet_offsets: numpy.ndarray
+    facet_holes: numpy.ndarray
+    hole_offsets: numpy.ndarray
+    segments: numpy.ndarray
+    tetrahedra: numpy.ndarray
+    point_markers: numpy.ndarray
+    segment_markers: numpy.ndarray
+    facet_markers: numpy.ndarray
+    region_holes: numpy.ndarray
+    region_seeds: numpy.ndarray
+    fields: Dict[str, Dict[str, numpy.ndarray]]
+    reference: Optional[str]
+    remark: str
+    notes: List[str]
+
     def __init__(
         self,
-        positions=(),
-        faces=None,
+        positions: ArrayLike = (),
+        faces: Any = None,
         *,
-        segments=None,
-        tetrahedra=None,
-        facets=None,
-        point_markers=None,
-        segment_markers=None,
-        facet_markers=None,
-        region_holes=None,
-        region_seeds=None,
-        fields=None,
-        remark="",
-    ):
+        segments: Optional[ArrayLike] = None,
+        tetrahedra: Optional[ArrayLike] = None,
+        facets: Any = None,
+        point_markers: Optional[ArrayLike] = None,
+        segment_markers: Optional[ArrayLike] = None,
+        facet_markers: Optional[ArrayLike] = None,
+        region_holes: Optional[ArrayLike] = None,
+        region_seeds: Optional[ArrayLike] = None,
+        fields: Optional[Dict[str, Dict[str, ArrayLike]]] = None,
+        remark: str = "",
+    ) -> None:
         self.positions = _inputs.doubles(positions, 3, "positions")
         self.facet_holes = numpy.zeros((0, 3))
         if facets is not None:
@@ -95,12 +118,12 @@ class MeshDocument:
         return document
 
     @property
-    def faces(self):
+    def faces(self) -> Union[numpy.ndarray, List[numpy.ndarray]]:
         """The polygons: an (m, k) array if all have k corners, else a list of arrays."""
         return split(self.corners, self.polygon_offsets)
 
     @property
-    def vertices(self):
+    def vertices(self) -> numpy.ndarray:
         """The same as positions."""
         return self.positions
 

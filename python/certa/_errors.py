@@ -1,5 +1,7 @@
 """Exceptions and warnings, and the small tuples that say where something is wrong."""
 
+from __future__ import annotations
+
 from typing import List, NamedTuple, Optional, Tuple
 
 
@@ -37,10 +39,13 @@ class InputError(ValueError):
     `defects` holds all that was found; `kind`, `elements` and `place` are those of the first.
     """
 
-    def __init__(self, message: str, defects: Optional[List[Defect]] = None):
+    message: str
+    defects: List[Defect]
+
+    def __init__(self, message: str, defects: Optional[List[Defect]] = None) -> None:
         super().__init__(message, defects)
         self.message = message
-        self.defects: List[Defect] = defects or []
+        self.defects = defects or []
 
     def __str__(self) -> str:
         return self.message
@@ -61,7 +66,12 @@ class InputError(ValueError):
 class IoError(OSError):
     """A file that cannot be read or written; `line` counts from 1 and is 0 where there is none."""
 
-    def __init__(self, message: str, path: str = "", line: int = 0, reason: str = ""):
+    message: str
+    path: str
+    line: int
+    reason: str
+
+    def __init__(self, message: str, path: str = "", line: int = 0, reason: str = "") -> None:
         super().__init__(message, path, line, reason)
         self.message = message
         self.path = path
@@ -78,7 +88,9 @@ class IoError(OSError):
 class ExpressionError(IoError):
     """A text that is no expression; `column` counts bytes from 1."""
 
-    def __init__(self, message: str, path: str = "", line: int = 0, reason: str = "", column: int = 0):
+    column: int
+
+    def __init__(self, message: str, path: str = "", line: int = 0, reason: str = "", column: int = 0) -> None:
         super().__init__(message, path, line, reason)
         self.column = column
 

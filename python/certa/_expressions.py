@@ -5,15 +5,21 @@ them is written down. What cannot be written down (branches, min, max, abs, conv
 happens, with what to use in its place.
 """
 
+from __future__ import annotations
+
 import decimal
 import fractions
 import inspect
 import math
 import numbers
+from typing import Any, Callable, Tuple, Union
 
 import numpy
+from numpy.typing import ArrayLike
 
 from . import _certa
+
+Number = Union[float, numbers.Rational, decimal.Decimal]
 
 
 class TraceError(TypeError):
@@ -39,7 +45,7 @@ class Expression:
 
     __slots__ = ("_function",)
 
-    def __init__(self, value):
+    def __init__(self, value: Union[str, Number, "Expression"]) -> None:
         if isinstance(value, str):
             self._function = _certa.parse_expression(value, "expression")
         else:
@@ -49,15 +55,15 @@ class Expression:
             self._function = function
 
     @property
-    def text(self):
+    def text(self) -> str:
         """One definition per operation; reads back to the same function."""
         return _certa.format_expression(self._function)
 
-    def gradient(self, x, y, z):
+    def gradient(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> numpy.ndarray:
         """Gradients in doubles: an array with one more axis, of length 3."""
         return self._evaluate(x, y, z)[1]
 
-    def __call__(self, x, y, z):
+    def __call__(self, x: ArrayLike, y: ArrayLike, z: ArrayLike) -> Any:
         return self._evaluate(x, y, z)[0]
 
     def _evaluate(self, x, y, z):
@@ -73,10 +79,10 @@ class Expression:
     def __reduce__(self):
         return Expression, (self.text,)
 
-    def __neg__(self):
+    def __neg__(self) -> "Expression":
         return _wrap(_certa.apply("negative", self._function))
 
-    def __pos__(self):
+    def __pos__(self) -> "Expression":
         return self
 
     __bool__ = _refuse("the truth", "a function has one formula everywhere; for solids use " + _BLENDS)
@@ -126,7 +132,7 @@ def _function_of(value):
 
 
 def _operator(name, swapped=False):
-    def operate(self, other):
+    def operate(self, other: Union["Expression", Number]) -> "Expression":
         function = _function_of(other)
         if function is None:
             return NotImplemented
@@ -141,8 +147,15 @@ for _name, _method in (("add", "add"), ("subtract", "sub"), ("multiply", "mul"),
     setattr(Expression, f"__r{_method}__", _operator(_name, swapped=True))
 
 
+def _method(function):
+    def method(self) -> "Expression":
+        return function(self)
+
+    return method
+
+
 def _unary(name):
-    def function(a):
+    def function(a: Union[Expression, Number]) -> Expression:
         inner = _function_of(a)
         if inner is None:
             raise TypeError(f"{name}: expected an expression or a number, not {type(a).__name__}")
@@ -152,19 +165,19 @@ def _unary(name):
     function.__module__ = "certa"
     function.__doc__ = f"{name} of an expression, as an expression."
     # numpy's functions call these methods of objects that they do not know.
-    setattr(Expression, name, lambda self: function(self))
+    setattr(Expression, name, _method(function))
     return function
 
 
 sqrt, exp, log, sin, cos = (_unary(name) for name in ("sqrt", "exp", "log", "sin", "cos"))
 tan, atan, sinh, cosh, tanh = (_unary(name) for name in ("tan", "atan", "sinh", "cosh", "tanh"))
 Expression.arctan = Expression.atan
-Expression.square = lambda self: self * self
-Expression.conjugate = lambda self: self
+Expression.square = _method(lambda a: a * a)
+Expression.conjugate = _method(lambda a: a)
 
 
 def _blend(name, meaning):
-    def function(a, b, k):
+    def function(a: Union[Expression, Number], b: Union[Expression, Number], k: Number) -> Expression:
         inner = [_function_of(value) for value in (a, b, k)]
         if None in inner:
             raise TypeError(f"{name}: expected two expressions and a number")
@@ -183,12 +196,12 @@ smooth_difference = _blend("smooth_difference", "The first without the second")
 pi = _wrap(_certa.variable("pi"))
 
 
-def variables():
+def variables() -> Tuple[Expression, Expression, Expression]:
     """Expressions for x, y and z."""
     return tuple(_wrap(_certa.variable(name)) for name in "xyz")
 
 
-def trace(function):
+def trace(function: Callable[[Expression, Expression, Expression], Any]) -> Expression:
     """The expression that a function of x, y, z computes. It is called once, with expressions.
 
     Raises

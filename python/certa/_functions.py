@@ -1,14 +1,19 @@
 """The functions of the package: they name arguments, hand them to the library, and make objects of what it returns."""
 
+from __future__ import annotations
+
 import os
 import pathlib
 import warnings
+from typing import Any, List, Optional, Union
+
+from numpy.typing import ArrayLike
 
 from . import _certa, _inputs
 from ._document import MeshDocument
 from ._errors import CertaWarning, UnfinishedWarning
 from ._expressions import expression_of
-from ._options import documented
+from ._options import Progress, documented
 from ._results import (
     ConformingCheck,
     ConformResult,
@@ -28,6 +33,12 @@ from ._results import (
 )
 from ._sources import as_document, available_memory, box_of, named_models, watch
 
+# Objects with .vertices and .faces or .points and .faces are meshes, too; functions are texts, expressions, callables.
+MeshLike = Any
+Faces = Any
+FunctionLike = Any
+Path = Union[str, "os.PathLike[str]"]
+
 _MESH_NAMES = (".off", ".obj", ".ply", ".stl", ".poly", ".smesh", ".node", ".ele", ".mesh", ".vtu", ".msh", ".csv")
 _ALONE = "nothing says what the mesh is to be checked against: give against="
 
@@ -43,7 +54,7 @@ def _unfinished(result, message):
     return result
 
 
-def read(path, *, format=None) -> MeshDocument:
+def read(path: Path, *, format: Optional[str] = None) -> MeshDocument:
     """Read a mesh file; numbers arrive as the nearest doubles, order is kept.
 
     Parameters
@@ -64,7 +75,9 @@ def read(path, *, format=None) -> MeshDocument:
 
 
 @documented("output", without=("reference",))
-def write(path, mesh, faces=None, *, format=None, **options) -> None:
+def write(
+    path: Path, mesh: MeshLike, faces: Optional[Faces] = None, *, format: Optional[str] = None, **options
+) -> None:
     """Write a mesh or a result to a file, whole or not at all; every number reads back as the same double.
 
     Parameters
@@ -92,7 +105,15 @@ def write(path, mesh, faces=None, *, format=None, **options) -> None:
 
 @documented("conform")
 def conform(
-    mesh, faces=None, *, segments=None, verify=True, reference="id", threads=None, progress=None, **options
+    mesh: MeshLike,
+    faces: Optional[Faces] = None,
+    *,
+    segments: Optional[ArrayLike] = None,
+    verify: bool = True,
+    reference: str = "id",
+    threads: Optional[int] = None,
+    progress: Progress = None,
+    **options,
 ) -> ConformResult:
     """Make the conforming Delaunay tetrahedral mesh of a surface mesh or a piecewise linear complex.
 
@@ -133,7 +154,16 @@ def conform(
 
 
 @documented("curvature")
-def curvature(mesh, faces=None, *, region=None, solid=None, threads=None, progress=None, **options):
+def curvature(
+    mesh: MeshLike,
+    faces: Optional[Faces] = None,
+    *,
+    region: Optional[Union[str, ArrayLike]] = None,
+    solid: Optional[int] = None,
+    threads: Optional[int] = None,
+    progress: Progress = None,
+    **options,
+) -> Union[CurvatureResult, RegionResult]:
     """Measure principal curvatures and directions at every vertex, or the curvature measures of one region.
 
     Curvatures are positive on a sphere whose normals point outwards; `mean` is the density of k1 + k2.
@@ -179,16 +209,16 @@ def curvature(mesh, faces=None, *, region=None, solid=None, threads=None, progre
 
 @documented("remesh")
 def remesh(
-    mesh,
-    mesh_faces=None,
+    mesh: MeshLike,
+    mesh_faces: Optional[Faces] = None,
     /,
     *,
-    features=None,
-    placement=True,
-    lines=False,
-    verify=True,
-    threads=None,
-    progress=None,
+    features: Optional[ArrayLike] = None,
+    placement: bool = True,
+    lines: bool = False,
+    verify: bool = True,
+    threads: Optional[int] = None,
+    progress: Progress = None,
     **options,
 ) -> RemeshResult:
     """Few polygons along lines of curvature: anisotropic, quad-dominant, with creases and boundary kept.
@@ -233,17 +263,17 @@ def remesh(
 
 @documented("implicit")
 def implicit(
-    function,
-    box=((-2.0, -2.0, -2.0), (2.0, 2.0, 2.0)),
+    function: FunctionLike,
+    box: ArrayLike = ((-2.0, -2.0, -2.0), (2.0, 2.0, 2.0)),
     *,
-    level=0.0,
-    error=None,
-    hausdorff=None,
-    engine="growth",
-    memory_bytes=None,
-    verify=True,
-    threads=None,
-    progress=None,
+    level: FunctionLike = 0.0,
+    error: Optional[Union[float, str]] = None,
+    hausdorff: Optional[Union[float, str]] = None,
+    engine: str = "growth",
+    memory_bytes: Optional[int] = None,
+    verify: bool = True,
+    threads: Optional[int] = None,
+    progress: Progress = None,
     **options,
 ) -> ImplicitResult:
     """Mesh the zero set of a function of x, y, z with certified topology. Inside is negative.
@@ -304,17 +334,17 @@ def implicit(
 
 @documented("conforming_check", "surface_check")
 def check(
-    mesh,
-    against=None,
+    mesh: MeshLike,
+    against: Optional[Union[MeshLike, FunctionLike]] = None,
     *,
-    certificate=None,
-    box=None,
-    repair=False,
-    triangulate=False,
-    threads=None,
-    progress=None,
+    certificate: Optional[str] = None,
+    box: Optional[ArrayLike] = None,
+    repair: bool = False,
+    triangulate: bool = False,
+    threads: Optional[int] = None,
+    progress: Progress = None,
     **options,
-):
+) -> Union[ConformingCheck, SurfaceCheck, ImplicitCheck, ImplicitMeshCheck]:
     """Verify what the other functions promise, on the mesh of any program.
 
     Parameters
@@ -389,7 +419,7 @@ def _only(options, table):
 
 
 @documented("view")
-def view(*models, title="", names=None, height=600, **options) -> View:
+def view(*models: MeshLike, title: str = "", names: Optional[List[str]] = None, height: int = 600, **options) -> View:
     """Make a self-contained page that shows meshes; as the last value of a notebook's cell it shows itself.
 
     Parameters

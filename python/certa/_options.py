@@ -1,5 +1,7 @@
 """Signatures and docstrings from the table of options that the command has too."""
 
+from __future__ import annotations
+
 import difflib
 import functools
 import inspect

@@ -1,5 +1,7 @@
 """What the functions return: numpy arrays with names, and where each element comes from."""
 
+from __future__ import annotations
+
 import enum
 import html
 import os
@@ -375,7 +377,7 @@ class ImplicitResult:
 class View:
     """A page that shows meshes: displays itself in notebooks; `html` is its text, `save` writes it to a file."""
 
-    def __init__(self, html: str, height: int = 600):
+    def __init__(self, html: str, height: int = 600) -> None:
         self.html = html
         self.height = height
 
