@@ -4,8 +4,9 @@
 //   curvature_accuracy SURFACE POINTS NOISE SEEDS METHOD...
 // SURFACE: torus (radii 2 and 0.7) or ellipsoid (2, 1.2, 0.8). NOISE: fraction of sqrt(area / N), uniform in a ball.
 // METHOD: rings:K:RIM, ball:X (in mean edge lengths), kernel2:X, kernel4:X, auto:WEIGHT, geodesic:X, corrected:K,
-// jet:D:K, automatic. Prints per method: mean error of k_max in %, mean angle of dir_min in degrees with its signed
-// bias, directions off by more than 30 degrees, angle of the normal, and microseconds per vertex (stage "estimate").
+// corrected-ball:X, corrected-kernel2:X, jet:D:K, automatic. Prints per method: mean error of k_max in %, mean angle of
+// dir_min in degrees with its signed bias, directions off by more than 30 degrees, angle of the normal, and
+// microseconds per vertex (stage "estimate").
 #include <certa/curvature.h>
 
 #include <algorithm>
@@ -98,7 +99,9 @@ CurvatureOptions options_of(const std::string& method, double h) {
     } else {
         options.neighborhood = kind == "geodesic" ? Neighborhood::geodesic : Neighborhood::ball;
         options.radius.value = number(1) * h;
-        options.weight = kind == "kernel2" ? Weight::kernel2 : kind == "kernel4" ? Weight::kernel4 : Weight::indicator;
+        const auto ends = [&](const char* name) { return kind.find(name) != std::string::npos; };
+        options.weight = ends("kernel2") ? Weight::kernel2 : ends("kernel4") ? Weight::kernel4 : Weight::indicator;
+        if (ends("corrected")) options.estimator = Estimator::corrected;
     }
     return options;
 }

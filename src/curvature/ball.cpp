@@ -12,15 +12,17 @@
 #include "core/parallel.h"
 
 namespace certa::curvature {
-namespace {
 
-constexpr std::array<std::size_t, 3> next{1, 2, 0}, previous{2, 0, 1};
-
+/// A face seen from a ball.
 struct LocalFace {
     std::array<Point3, 3> points;
     std::array<double, 3> squares;
     std::array<SideCut, 3> sides;  ///< opposite corner i
 };
+
+namespace {
+
+constexpr std::array<std::size_t, 3> next{1, 2, 0}, previous{2, 0, 1};
 
 LocalFace local_face(const Surface& surface, const WeightedBall& ball, Index face) {
     LocalFace local;
@@ -71,13 +73,35 @@ std::vector<EdgeTensors> build_hinge_tensors(const Surface& surface, const RunCo
     return tensors;
 }
 
-Sums BallWalker::sum(Index vertex, const Point3& center, double radius, Weight weight) {
-    Sums sums;
-    const WeightedBall ball(center, radius, weight);
+void BallWalker::start(Index vertex) {
     inside_.clear(), outside_.clear(), faces_.clear();
     vertex_queue_.assign(1, vertex);
     face_queue_.clear();
     inside_.mark(vertex);
+}
+
+std::span<const FaceShare> BallWalker::collect(Index vertex, const Point3& center, double radius, Weight weight) {
+    const WeightedBall ball(center, radius, weight);
+    start(vertex);
+    shares_.clear();
+    std::size_t face = 0;
+    for (std::size_t k = 0; k < vertex_queue_.size(); ++k) {
+        for (const Index f : context_.surface.vertex_faces[vertex_queue_[k]])
+            if (faces_.mark(f)) face_queue_.push_back(f);
+        for (; face < face_queue_.size(); ++face) {
+            const Index f = face_queue_[face];
+            const LocalFace local = local_face(context_.surface, ball, f);
+            shares_.push_back({f, face_integral(context_.surface, ball, local, f)});
+            go_on(f, local);
+        }
+    }
+    return shares_;
+}
+
+Sums BallWalker::sum(Index vertex, const Point3& center, double radius, Weight weight) {
+    Sums sums;
+    const WeightedBall ball(center, radius, weight);
+    start(vertex);
     std::size_t face = 0;
     for (std::size_t k = 0; k < vertex_queue_.size(); ++k) {
         take_vertex(sums, ball, vertex_queue_[k]);
@@ -141,18 +165,25 @@ void BallWalker::take_face(Sums& sums, const WeightedBall& ball, Index face) {
     const Surface& surface = context_.surface;
     const LocalFace local = local_face(surface, ball, face);
     sums.area += face_integral(surface, ball, local, face);
+    go_on(face, local);
     const bool whole = ball.weight() == Weight::indicator;
-    const auto& corners = surface.faces[face];
     for (std::size_t i = 0; i < 3; ++i) {
-        if (local.squares[i] <= 1.0 && inside_.mark(corners[i])) vertex_queue_.push_back(corners[i]);
-        const bool starts = local.squares[next[i]] <= 1.0, ends = local.squares[previous[i]] <= 1.0;
-        if ((whole && starts && ends) || !local.sides[i].meets()) continue;
+        // Edges inside the indicator's ball are counted from their ends.
+        if (whole && local.squares[next[i]] <= 1.0 && local.squares[previous[i]] <= 1.0) continue;
         const Index h = surface.face_hinges[face][i];
-        const Index across = surface.across(face, h);
-        if (across == no_index) continue;
         if (surface.hinges[h].left == face) add_side(sums, context_, ball, local, h, i);
+    }
+}
+
+void BallWalker::go_on(Index face, const LocalFace& local) {
+    const Surface& surface = context_.surface;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Index corner = surface.faces[face][i];
+        if (local.squares[i] <= 1.0 && inside_.mark(corner)) vertex_queue_.push_back(corner);
         // Ends inside bring their faces with them.
-        if (!starts && !ends && faces_.mark(across)) face_queue_.push_back(across);
+        if (local.squares[next[i]] <= 1.0 || local.squares[previous[i]] <= 1.0 || !local.sides[i].meets()) continue;
+        const Index across = surface.across(face, surface.face_hinges[face][i]);
+        if (across != no_index && faces_.mark(across)) face_queue_.push_back(across);
     }
 }
 

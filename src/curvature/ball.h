@@ -16,6 +16,12 @@ struct BallContext {
     std::vector<EdgeTensors> tensors;
 };
 
+struct FaceShare {
+    Index face = 0;
+    double area = 0.0;  ///< integral of the weight over it
+};
+struct LocalFace;
+
 /// One per thread. The part of the surface in the ball that connects to the vertex (within the ball).
 class BallWalker {
 public:
@@ -25,8 +31,13 @@ public:
           outside_(context.surface.positions.size()),
           faces_(context.surface.faces.size()) {}
     Sums sum(Index vertex, const Point3& center, double radius, Weight weight);
+    /// The faces of that part with their weighted areas.
+    std::span<const FaceShare> collect(Index vertex, const Point3& center, double radius, Weight weight);
 
 private:
+    void start(Index vertex);
+    /// What a face brings with it: its corners inside, and faces across sides that pass through the ball.
+    void go_on(Index face, const LocalFace& local);
     void take_vertex(Sums& sums, const WeightedBall& ball, Index vertex);
     void take_rim_vertex(Sums& sums, const WeightedBall& ball, Index vertex);
     void take_face(Sums& sums, const WeightedBall& ball, Index face);
@@ -34,6 +45,7 @@ private:
     const BallContext& context_;
     Marks inside_, outside_, faces_;
     std::vector<Index> vertex_queue_, face_queue_;
+    std::vector<FaceShare> shares_;
 };
 
 /// The same over all sheets, by a tree of sums: indicator balls cost O(radius / edge length + log n).

@@ -36,8 +36,11 @@ void require_valid(const CurvatureOptions& options) {
     if (options.bounds && options.neighborhood != Neighborhood::rings) refuse(defects, "bounds need rings");
     if (options.bounds && options.estimator != Estimator::normal_cycle)
         refuse(defects, "bounds need the estimator normal_cycle");
-    if (options.estimator == Estimator::corrected && options.neighborhood != Neighborhood::rings)
-        refuse(defects, "the corrected estimator needs rings");
+    if (options.estimator == Estimator::corrected && options.neighborhood != Neighborhood::rings &&
+        options.neighborhood != Neighborhood::ball)
+        refuse(defects, "the corrected estimator needs rings or a ball of given radius");
+    if (options.estimator != Estimator::normal_cycle && options.all_sheets)
+        refuse(defects, "all_sheets needs the estimator normal_cycle");
     if (options.estimator == Estimator::automatic &&
         (options.neighborhood != Neighborhood::rings || options.weight != Weight::indicator))
         refuse(defects, "the automatic estimator chooses the region around vertices itself");
@@ -173,7 +176,9 @@ private:
 FactoryPointer choose_factory(const Surface& surface, const Cells& cells, const CurvatureOptions& options,
                               double radius, const RunControl& control) {
     if (options.estimator == Estimator::corrected)
-        return make_corrected_factory(surface, cells, options.rings, options.rim);
+        return make_corrected_factory(
+            surface, cells,
+            {options.rings, options.rim, options.neighborhood == Neighborhood::ball ? radius : 0.0, options.weight});
     if (options.estimator == Estimator::jet)
         return make_jet_factory(surface, cells, options.jet_degree,
                                 options.neighborhood == Neighborhood::rings ? options.rings : 0, radius);
@@ -183,7 +188,7 @@ FactoryPointer choose_factory(const Surface& surface, const Cells& cells, const 
         case Neighborhood::ball:
             return make_ball_factory(surface, cells, radius, options.weight, options.all_sheets, control);
         case Neighborhood::automatic_ball:
-            return make_automatic_ball_factory(surface, cells, options.weight, options.all_sheets, control);
+            return make_automatic_ball_factory(surface, cells, options.weight, control);
         case Neighborhood::geodesic:
             return make_geodesic_factory(surface, cells, radius, control);
     }

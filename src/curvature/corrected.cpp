@@ -37,68 +37,94 @@ FaceCurrent current_of(const Surface& surface, Index face) {
     return current;
 }
 
+/// Over rings, or over balls where the radius is above 0.
 class CorrectedEstimator : public VertexEstimator {
 public:
-    CorrectedEstimator(const Surface& surface, const Cells& cells, const std::vector<FaceCurrent>& currents,
-                       std::uint64_t rings, Rim rim)
-        : surface_(surface), currents_(currents), walker_(surface, cells), rings_(rings), rim_(rim) {}
+    CorrectedEstimator(const BallContext& context, const std::vector<FaceCurrent>& currents,
+                       const CorrectedRegion& region)
+        : context_(context),
+          currents_(currents),
+          region_(region),
+          rings_(context.surface, context.cells),
+          balls_(region.radius > 0.0 ? std::make_unique<BallWalker>(context) : nullptr) {}
 
     void estimate(Index vertex, VertexRow& row) override {
-        FaceCurrent sum;
-        const auto add_face = [&](Index f, double weight) {
-            const FaceCurrent& current = currents_[f];
-            sum.area += weight * current.area, sum.mean += weight * current.mean;
-            sum.gaussian += weight * current.gaussian;
-            add(sum.tensor, weight, current.tensor);
-        };
-        if (rim_ == Rim::dual) {
-            for (const Index v : walker_.collect(vertex, rings_))
-                for (const Index f : surface_.vertex_faces[v]) add_face(f, 1.0 / 3.0);
-        } else {
-            for (const Index f : walker_.collect_faces(vertex, rings_)) add_face(f, 1.0);
-        }
+        FaceCurrent sum = region_.radius > 0.0 ? over_ball(vertex, row) : over_rings(vertex);
         row.sums.area = sum.area;
         row.sums.gaussian = sum.gaussian;
-        const Point3& normal = surface_.normals[vertex];
+        const Point3& normal = context_.surface.normals[vertex];
         if (!(sum.area > 0.0) || normal == Point3{}) {
             row.flags |= vertex_flags::undefined;
             return;
         }
         row.mean = sum.mean / sum.area;
         row.gaussian = sum.gaussian / sum.area;
-        row.principal = compute_principal_along(sum.tensor, sum.area, normal);
+        // As with the swapped tensor: what lies across a direction does not tilt out of the tangent plane along it.
+        const Principal along = compute_principal_along(sum.tensor, sum.area, normal);
+        row.principal = make_principal(row.mean - along.k_max, row.mean - along.k_min, along.dir_min, normal);
     }
 
 private:
-    const Surface& surface_;
+    void add_face(FaceCurrent& sum, Index f, double weight) const {
+        const FaceCurrent& current = currents_[f];
+        sum.area += weight * current.area, sum.mean += weight * current.mean;
+        sum.gaussian += weight * current.gaussian;
+        add(sum.tensor, weight, current.tensor);
+    }
+
+    FaceCurrent over_rings(Index vertex) {
+        FaceCurrent sum;
+        if (region_.rim == Rim::dual) {
+            for (const Index v : rings_.collect(vertex, region_.rings))
+                for (const Index f : context_.surface.vertex_faces[v]) add_face(sum, f, 1.0 / 3.0);
+        } else {
+            for (const Index f : rings_.collect_faces(vertex, region_.rings)) add_face(sum, f, 1.0);
+        }
+        return sum;
+    }
+
+    /// A face counts by the share of its area that is inside, weighted.
+    FaceCurrent over_ball(Index vertex, VertexRow& row) {
+        const auto over = [&](Weight weight) {
+            FaceCurrent sum;
+            for (const auto& [f, area] :
+                 balls_->collect(vertex, context_.surface.positions[vertex], region_.radius, weight))
+                if (area != 0.0) add_face(sum, f, area / context_.surface.face_geometry[f].area);
+            return sum;
+        };
+        const FaceCurrent sum = over(region_.weight);
+        if (region_.weight != Weight::kernel4 || is_safe_kernel4(sum.area, region_.radius)) return sum;
+        row.flags |= vertex_flags::fallback;
+        return over(Weight::kernel2);
+    }
+
+    const BallContext& context_;
     const std::vector<FaceCurrent>& currents_;
-    RingWalker walker_;
-    std::uint64_t rings_;
-    Rim rim_;
+    const CorrectedRegion& region_;
+    RingWalker rings_;
+    std::unique_ptr<BallWalker> balls_;
 };
 
 class CorrectedFactory : public EstimatorFactory {
 public:
-    CorrectedFactory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim)
-        : surface_(surface), cells_(cells), rings_(rings), rim_(rim), currents_(surface.faces.size()) {
+    CorrectedFactory(const Surface& surface, const Cells& cells, const CorrectedRegion& region)
+        : context_{surface, cells, {}}, region_(region), currents_(surface.faces.size()) {
         for (std::size_t f = 0; f < currents_.size(); ++f) currents_[f] = current_of(surface, static_cast<Index>(f));
     }
     std::unique_ptr<VertexEstimator> make() const override {
-        return std::make_unique<CorrectedEstimator>(surface_, cells_, currents_, rings_, rim_);
+        return std::make_unique<CorrectedEstimator>(context_, currents_, region_);
     }
 
 private:
-    const Surface& surface_;
-    const Cells& cells_;
-    std::uint64_t rings_;
-    Rim rim_;
+    BallContext context_;
+    CorrectedRegion region_;
     std::vector<FaceCurrent> currents_;
 };
 
 }  // namespace
 
-FactoryPointer make_corrected_factory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim) {
-    return std::make_unique<CorrectedFactory>(surface, cells, rings, rim);
+FactoryPointer make_corrected_factory(const Surface& surface, const Cells& cells, const CorrectedRegion& region) {
+    return std::make_unique<CorrectedFactory>(surface, cells, region);
 }
 
 }  // namespace certa::curvature

@@ -49,8 +49,7 @@ public:
         : walker_(std::move(walker)), surface_(surface), radius_(radius), weight_(weight) {}
     void estimate(Index vertex, VertexRow& row) override {
         row.sums = sum(vertex, weight_);
-        const double flat_disc = std::numbers::pi / 8.0 * radius_ * radius_;
-        if (weight_ == Weight::kernel4 && !(row.sums.area > 0.5 * flat_disc)) {
+        if (weight_ == Weight::kernel4 && !is_safe_kernel4(row.sums.area, radius_)) {
             row.sums = sum(vertex, Weight::kernel2);
             row.flags |= vertex_flags::fallback;
         }
@@ -92,6 +91,8 @@ private:
 };
 
 }  // namespace
+
+bool is_safe_kernel4(double area, double radius) { return area > 0.5 * std::numbers::pi / 8.0 * radius * radius; }
 
 void finish_normal_cycle(const Surface& surface, Index vertex, VertexRow& row) {
     const Sums& sums = row.sums;

@@ -28,6 +28,9 @@ public:
 /// Densities and principal curvatures from the sums, as the thesis has them.
 void finish_normal_cycle(const Surface& surface, Index vertex, VertexRow& row);
 
+/// Whether signed weights leave enough of the region: half of what a flat disc has.
+bool is_safe_kernel4(double area, double radius);
+
 /// What is shared between threads and outlives the estimators made from it.
 class EstimatorFactory {
 public:
@@ -40,11 +43,17 @@ FactoryPointer make_ring_factory(const Surface& surface, const Cells& cells, std
 /// `radius` in the surface's units; `geodesic` and `automatic_ball` have factories of their own.
 FactoryPointer make_ball_factory(const Surface& surface, const Cells& cells, double radius, Weight weight,
                                  bool all_sheets, const RunControl& control);
-FactoryPointer make_automatic_ball_factory(const Surface& surface, const Cells& cells, Weight weight, bool all_sheets,
+FactoryPointer make_automatic_ball_factory(const Surface& surface, const Cells& cells, Weight weight,
                                            const RunControl& control);
 FactoryPointer make_geodesic_factory(const Surface& surface, const Cells& cells, double radius,
                                      const RunControl& control);
-FactoryPointer make_corrected_factory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim);
+struct CorrectedRegion {
+    std::uint64_t rings = 1;
+    Rim rim = Rim::dual;
+    double radius = 0.0;  ///< of balls, in the surface's units; 0: rings
+    Weight weight = Weight::indicator;
+};
+FactoryPointer make_corrected_factory(const Surface& surface, const Cells& cells, const CorrectedRegion& region);
 /// rings 0: balls of `radius`.
 FactoryPointer make_jet_factory(const Surface& surface, const Cells& cells, std::uint64_t degree, std::uint64_t rings,
                                 double radius);
