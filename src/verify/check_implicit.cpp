@@ -62,7 +62,7 @@ public:
     VerifiedW verified() {
         VerifiedW w;
         w.marked = std::move(marked_);
-        for (std::uint32_t p = 0; p < c_.points().size(); ++p) w.part_of_point.push_back(regions_->of(p));
+        w.part_of_point = std::move(part_);
         w.components = std::move(verified_);
         return w;
     }
@@ -113,20 +113,26 @@ private:
         return {};
     }
 
+    /// The tetrahedra around each point that is to be marked.
     void index_stars() {
+        std::vector<char> wanted(c_.points().size(), 0);
+        for (const std::uint32_t p : c_.marks) wanted[p] = 1;
         star_first_.assign(c_.points().size() + 1, 0);
         for (const Tet& t : c_.tets()) {
-            for (const std::uint32_t p : t) ++star_first_[p + 1];
+            for (const std::uint32_t p : t) star_first_[p + 1] += wanted[p] ? 1 : 0;
         }
         std::partial_sum(star_first_.begin(), star_first_.end(), star_first_.begin());
         star_.resize(star_first_.back());
         std::vector<std::uint32_t> next(star_first_.begin(), star_first_.end() - 1);
         for (std::uint32_t i = 0; i < c_.tets().size(); ++i) {
-            for (const std::uint32_t p : c_.tets()[i]) star_[next[p]++] = i;
+            for (const std::uint32_t p : c_.tets()[i]) {
+                if (wanted[p]) star_[next[p]++] = i;
+            }
         }
     }
 
     void replay_marks() {
+        place_in_link_.assign(c_.points().size() + 1, nowhere);
         for (const std::uint32_t p : c_.marks) {
             if (marked_[p]) add("a point is marked twice: " + show_point(p));
             if (!may_join(p)) add("a mark adds no cone over a contractible set, at " + show_point(p));
@@ -139,13 +145,13 @@ private:
     bool may_join(std::uint32_t p) {
         const unsigned faces = c_.box_faces(c_.points()[p]);
         if (faces != 0 && !c_.is_clipped()) return false;
-        std::map<std::uint32_t, std::vector<std::uint32_t>> neighbours;
+        link_edges_.clear();
         for (std::uint32_t k = star_first_[p]; k < star_first_[p + 1]; ++k) {
             if (c_.leaves()[c_.leaf_of_tet()[star_[k]]].is_critical()) return false;
             const Tet& t = c_.tets()[star_[k]];
-            for (const std::uint32_t a : t) {
-                for (const std::uint32_t b : t) {
-                    if (a != p && b != p && a != b) neighbours[a].push_back(b);
+            for (std::size_t i = 0; i < 4; ++i) {
+                for (std::size_t j = i + 1; j < 4; ++j) {
+                    if (t[i] != p && t[j] != p) link_edges_.emplace_back(t[i], t[j]);
                 }
             }
         }
@@ -154,22 +160,38 @@ private:
             return a != ImplicitComplex::no_point && (c_.sign[a] != c_.sign[p] || marked_[a] != 0);
         };
         if (faces != 0 &&
-            !close_rim(c_, p, {star_.data() + star_first_[p], star_.data() + star_first_[p + 1]}, inside, neighbours))
+            !close_rim(c_, p, {star_.data() + star_first_[p], star_.data() + star_first_[p + 1]}, inside, link_edges_))
             return false;
-        int parts[2] = {0, 0};
-        std::set<std::uint32_t> seen;
-        for (const auto& [start, around] : neighbours) {
-            if (!seen.insert(start).second) continue;
-            ++parts[inside(start) ? 1 : 0];
-            std::vector<std::uint32_t> work{start};
-            while (!work.empty()) {
-                const std::uint32_t a = work.back();
-                work.pop_back();
-                for (const std::uint32_t b : neighbours.at(a)) {
-                    if (inside(a) == inside(b) && seen.insert(b).second) work.push_back(b);
-                }
+        return has_two_parts(inside);
+    }
+
+    /// Whether the points of the link's edges that are inside are one part, and those that are not another.
+    template <class Inside>
+    bool has_two_parts(const Inside& inside) {
+        const auto slot_of = [&](std::uint32_t a) -> std::uint32_t& {
+            return place_in_link_[a == ImplicitComplex::no_point ? c_.points().size() : a];
+        };
+        link_.clear();
+        for (const auto& [a, b] : link_edges_) {
+            for (const std::uint32_t end : {a, b}) {
+                if (slot_of(end) != nowhere) continue;
+                slot_of(end) = static_cast<std::uint32_t>(link_.size());
+                link_.push_back({end, slot_of(end), inside(end)});
             }
         }
+        const auto root = [&](std::uint32_t i) {
+            while (link_[i].up != i) i = link_[i].up = link_[link_[i].up].up;
+            return i;
+        };
+        int parts[2] = {0, 0};
+        for (const LinkPoint& point : link_) ++parts[point.inside ? 1 : 0];
+        for (const auto& [a, b] : link_edges_) {
+            const std::uint32_t i = root(slot_of(a)), j = root(slot_of(b));
+            if (i == j || link_[i].inside != link_[j].inside) continue;
+            link_[i].up = j;
+            --parts[link_[j].inside ? 1 : 0];
+        }
+        for (const LinkPoint& point : link_) slot_of(point.id) = nowhere;
         return parts[0] == 1 && parts[1] == 1;
     }
 
@@ -190,18 +212,24 @@ private:
     }
 
     void check_frontier() {
-        std::set<std::vector<std::uint32_t>> faces;
+        // The largest marked face of each tetrahedron outside W; of fewer than three points, the last one repeats.
+        std::vector<std::array<std::uint32_t, 3>> list;
         for (std::size_t i = 0; i < c_.tets().size(); ++i) {
             if (c_.leaves()[c_.leaf_of_tet()[i]].sign != 0) continue;  // proved with the leaf
-            std::vector<std::uint32_t> face;
+            std::array<std::uint32_t, 3> face{};
+            std::size_t count = 0;
             for (const std::uint32_t p : c_.tets()[i]) {
-                if (marked_[p]) face.push_back(p);
+                if (!marked_[p]) continue;
+                if (count < 3) face[count] = p;
+                ++count;
             }
-            if (face.empty() || face.size() == 4 || is_mixed(c_.tets()[i])) continue;
+            if (count == 0 || count == 4 || is_mixed(c_.tets()[i])) continue;
+            for (; count < 3; ++count) face[count] = face[count - 1];
             std::sort(face.begin(), face.end());
-            faces.insert(face);
+            list.push_back(face);
         }
-        const std::vector<std::vector<std::uint32_t>> list(faces.begin(), faces.end());
+        std::sort(list.begin(), list.end());
+        list.erase(std::unique(list.begin(), list.end()), list.end());
         std::vector<char> holds(list.size(), 0);
         core::parallel_for(list.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
             Enclosures enclosures(function_);
@@ -223,25 +251,23 @@ private:
 
     // ---- Degrees ----------------------------------------------------------------------------------------------------
 
-    /// An oriented square of the boundary of the critical leaves of one cluster.
-    struct Patch {
-        std::array<std::uint32_t, 4> corners;
-        int axis, slope;
-    };
-
     /// Critical leaves that share a point of T; each cluster with its squares.
     void check_balance() {
         Parts clusters(c_.points().size());
+        std::vector<char> of_critical(c_.points().size(), 0);
         for (std::size_t i = 0; i < c_.tets().size(); ++i) {
             if (!c_.leaves()[c_.leaf_of_tet()[i]].is_critical()) continue;
-            for (const std::uint32_t p : c_.tets()[i]) clusters.join(p, c_.tets()[i][0]);
+            for (const std::uint32_t p : c_.tets()[i]) {
+                clusters.join(p, c_.tets()[i][0]);
+                of_critical[p] = 1;
+            }
         }
         std::map<std::uint32_t, std::vector<SlopeTriangle>> boundaries;  // per cluster
-        collect_boundaries(clusters, boundaries);
+        collect_boundaries(clusters, of_critical, boundaries);
         find_regions();
         std::map<std::uint32_t, long> degree_of_region;
         for (const auto& [cluster, triangles] : boundaries) {
-            const std::uint32_t region = regions_->of(cluster);
+            const std::uint32_t region = part_[cluster];
             if (c_.is_clipped())
                 degree_of_region[region] += degree_of(unfolded(c_, triangles));
             else if (region != outside_)
@@ -250,55 +276,76 @@ private:
         balance(degree_of_region);
     }
 
-    void collect_boundaries(Parts& clusters, std::map<std::uint32_t, std::vector<SlopeTriangle>>& boundaries) {
-        // Each tetrahedron has one triangle on the surface of its leaf: the one without the leaf's centre.
-        std::map<std::array<std::uint32_t, 3>, std::uint32_t> critical;
+    /// Each tetrahedron has one triangle on the surface of its leaf: the one without the leaf's centre.
+    void collect_boundaries(Parts& clusters, const std::vector<char>& of_critical,
+                            std::map<std::uint32_t, std::vector<SlopeTriangle>>& boundaries) {
+        struct OnSurface {
+            std::array<std::uint32_t, 3> key;
+            std::uint32_t tet;
+            bool operator<(const OnSurface& o) const { return key != o.key ? key < o.key : tet < o.tet; }
+        };
+        std::vector<OnSurface> all;
         for (std::uint32_t i = 0; i < c_.tets().size(); ++i) {
-            if (c_.leaves()[c_.leaf_of_tet()[i]].is_critical()) critical.emplace(surface_key(c_.tets()[i]), i);
+            const Tet& t = c_.tets()[i];
+            if (!of_critical[t[1]] || !of_critical[t[2]] || !of_critical[t[3]]) continue;
+            all.push_back({{t[1], t[2], t[3]}, i});
+            std::sort(all.back().key.begin(), all.back().key.end());
         }
-        for (std::uint32_t i = 0; i < c_.tets().size(); ++i) {
-            const ClaimedLeaf& leaf = c_.leaves()[c_.leaf_of_tet()[i]];
-            if (leaf.is_critical()) continue;
-            const auto found = critical.find(surface_key(c_.tets()[i]));
-            if (found == critical.end()) continue;
-            const Tet& t = c_.tets()[found->second];
+        std::sort(all.begin(), all.end());
+        const auto leaf_of = [&](const OnSurface& s) -> const ClaimedLeaf& {
+            return c_.leaves()[c_.leaf_of_tet()[s.tet]];
+        };
+        for (std::size_t i = 0; i + 1 < all.size(); ++i) {
+            if (all[i].key != all[i + 1].key) continue;
+            const bool first = leaf_of(all[i]).is_critical(), second = leaf_of(all[i + 1]).is_critical();
+            if (first == second) continue;
+            const Tet& t = c_.tets()[all[first ? i : i + 1].tet];
+            const ClaimedLeaf& regular = leaf_of(all[first ? i + 1 : i]);
             // (t1, t2, t3) is counter-clockwise seen from outside the critical leaf, its centre t0 being behind.
-            boundaries[clusters.of(t[0])].push_back({{t[1], t[2], t[3]}, leaf.axis, leaf.slope});
+            boundaries[clusters.of(t[0])].push_back({{t[1], t[2], t[3]}, regular.axis, regular.slope});
         }
     }
-    static std::array<std::uint32_t, 3> surface_key(const Tet& t) {
-        std::array<std::uint32_t, 3> key{t[1], t[2], t[3]};
-        std::sort(key.begin(), key.end());
-        return key;
-    }
+
+    /// What the triangles around an edge say of it: how often the boundary of P runs along it, from the lower to the
+    /// higher point, and the signs of the first two derivatives.
+    struct SlopeEdge {
+        std::uint32_t low, high;
+        long times;
+        int x, y;
+    };
 
     /// The degree by the preimages of -z: triangles with slope (z, -) make P; on its boundary, crossings of x > 0 make
     /// A; ends of A with y > 0 count. The orientation around -z is the opposite of that around +z, hence the sign.
     long degree_of(const std::vector<SlopeTriangle>& triangles) {
-        struct Edge {
-            long times = 0;
-            int x = 0, y = 0;
-        };
-        std::map<std::pair<std::uint32_t, std::uint32_t>, Edge> edges;
+        std::vector<SlopeEdge> edges;
         for (const SlopeTriangle& t : triangles) {
             for (std::size_t i = 0; i < 3; ++i) {
                 const std::uint32_t a = t.corners[i], b = t.corners[(i + 1) % 3];
-                Edge& edge = edges[{std::min(a, b), std::max(a, b)}];
-                if (t.axis == 2 && t.slope < 0) edge.times += a < b ? 1 : -1;
-                if (t.axis == 0) edge.x = t.slope;
-                if (t.axis == 1) edge.y = t.slope;
+                const long times = t.axis == 2 && t.slope < 0 ? (a < b ? 1 : -1) : 0;
+                edges.push_back(
+                    {std::min(a, b), std::max(a, b), times, t.axis == 0 ? t.slope : 0, t.axis == 1 ? t.slope : 0});
             }
         }
+        std::sort(edges.begin(), edges.end(), [](const SlopeEdge& a, const SlopeEdge& b) {
+            return a.low != b.low ? a.low < b.low : a.high < b.high;
+        });
         std::map<std::uint32_t, long> ends;
         std::map<std::uint32_t, int> y_at;
-        for (const auto& [key, edge] : edges) {
+        for (std::size_t i = 0, next = 0; i < edges.size(); i = next) {
+            SlopeEdge edge = edges[i];
+            for (next = i + 1; next < edges.size() && edges[next].low == edge.low && edges[next].high == edge.high;
+                 ++next) {
+                edge.times += edges[next].times;
+                if (edges[next].x != 0) edge.x = edges[next].x;
+                if (edges[next].y != 0) edge.y = edges[next].y;
+            }
             if (edge.times == 0) continue;
             if (edge.x == 0 && edge.y == 0) add("the boundary of a cluster is not covered by slopes");
             if (edge.x > 0) {
-                ends[key.second] += edge.times;
-                ends[key.first] -= edge.times;
+                ends[edge.high] += edge.times;
+                ends[edge.low] -= edge.times;
             }
-            if (edge.x == 0) y_at[key.first] = y_at[key.second] = edge.y;
+            if (edge.x == 0) y_at[edge.low] = y_at[edge.high] = edge.y;
         }
         long degree = 0;
         for (const auto& [point, times] : ends) {
@@ -314,17 +361,20 @@ private:
 
     // ---- Regions and components -------------------------------------------------------------------------------------
 
+    /// Components of W beside those of its complement.
     void find_regions() {
-        regions_ = std::make_unique<Parts>(c_.points().size());
+        Parts parts(c_.points().size());
         for (const Tet& t : c_.tets()) {
-            for (const std::uint32_t a : t) {
-                for (const std::uint32_t b : t) {
-                    if (marked_[a] == marked_[b])
-                        regions_->join(a, b);  // components of W beside those of its complement
-                }
+            std::uint32_t last[2] = {ImplicitComplex::no_point, ImplicitComplex::no_point};
+            for (const std::uint32_t p : t) {
+                std::uint32_t& before = last[marked_[p] ? 1 : 0];
+                if (before != ImplicitComplex::no_point) parts.join(p, before);
+                before = p;
             }
         }
-        outside_ = regions_->of(c_.find({0, 0, 0}));
+        part_.resize(c_.points().size());
+        for (std::uint32_t p = 0; p < part_.size(); ++p) part_[p] = parts.of(p);
+        outside_ = part_[c_.find({0, 0, 0})];
     }
 
     struct Component {
@@ -338,27 +388,30 @@ private:
         bool is_integral() const { return (euler8 + 2 * edge_points) % 8 == 0 && (loops + euler()) % 2 == 0; }
     };
 
-    void balance(std::map<std::uint32_t, long>& degree_of_region) {
+    using MixedEdges = std::vector<std::pair<std::uint32_t, std::uint32_t>>;
+
+    void balance(const std::map<std::uint32_t, long>& degree_of_region) {
         std::map<std::uint32_t, Component> components;
-        std::set<std::pair<std::uint32_t, std::uint32_t>> mixed_edges;
         std::map<std::uint32_t, int> sign_of_region;
-        for (const Tet& t : c_.tets()) {
-            for (const std::uint32_t p : t) {
-                if (marked_[p])
-                    components[regions_->of(p)];
-                else
-                    sign_of_region[regions_->of(p)] = c_.sign[p];
-            }
-            note(t, components, mixed_edges);
+        for (std::uint32_t p = 0; p < part_.size(); ++p) {
+            if (part_[p] != p) continue;  // one point of each part
+            if (marked_[p])
+                components[p];
+            else
+                sign_of_region[p] = c_.sign[p];
         }
+        MixedEdges mixed_edges;
+        for (const Tet& t : c_.tets()) note(t, components, mixed_edges);
+        std::sort(mixed_edges.begin(), mixed_edges.end());
+        mixed_edges.erase(std::unique(mixed_edges.begin(), mixed_edges.end()), mixed_edges.end());
         for (const auto& [a, b] : mixed_edges) {
             const auto faces =
                 c_.is_clipped() ? std::popcount(c_.box_faces(c_.points()[a]) & c_.box_faces(c_.points()[b])) : 0;
-            components.at(regions_->of(a)).euler8 += 8 >> faces;
-            components.at(regions_->of(a)).edge_points += faces == 2 ? 1 : 0;
+            components.at(part_[a]).euler8 += 8 >> faces;
+            components.at(part_[a]).edge_points += faces == 2 ? 1 : 0;
         }
         if (c_.is_clipped()) {
-            for (const std::uint32_t p : loops_in_box_faces(c_)) ++components.at(regions_->of(p)).loops;
+            for (const std::uint32_t p : loops_in_box_faces(c_)) ++components.at(part_[p]).loops;
         }
         std::set<std::uint32_t> done;
         for (auto& [id, component] : components) {
@@ -376,30 +429,30 @@ private:
         }
     }
 
-    void note(const Tet& t, std::map<std::uint32_t, Component>& components,
-              std::set<std::pair<std::uint32_t, std::uint32_t>>& mixed_edges) {
-        std::uint32_t component = ImplicitComplex::no_point, region = component;
+    void note(const Tet& t, std::map<std::uint32_t, Component>& components, MixedEdges& mixed_edges) {
+        std::uint32_t inside = ImplicitComplex::no_point, region = inside;
         int positive = 0;
         for (const std::uint32_t p : t) {
-            (marked_[p] ? component : region) = regions_->of(p);
+            (marked_[p] ? inside : region) = part_[p];
             positive += c_.sign[p] > 0 ? 1 : 0;
         }
-        if (component != ImplicitComplex::no_point && region != ImplicitComplex::no_point)
-            components[component].regions.insert(region);
+        if (inside == ImplicitComplex::no_point) return;
+        Component& component = components.at(inside);
+        if (region != ImplicitComplex::no_point) component.regions.insert(region);
         if (positive == 0 || positive == 4) return;
-        ++components[component].tets;
-        components[component].euler8 += 8 - 4 * (positive == 2 ? 4 : 3);
+        ++component.tets;
+        component.euler8 += 8 - 4 * (positive == 2 ? 4 : 3);
         for (std::size_t i = 0; i < 4; ++i) {
             for (std::size_t j = i + 1; j < 4; ++j) {
-                if (c_.sign[t[i]] != c_.sign[t[j]]) mixed_edges.insert(std::minmax(t[i], t[j]));
+                if (c_.sign[t[i]] != c_.sign[t[j]]) mixed_edges.push_back(std::minmax(t[i], t[j]));
             }
         }
     }
 
     /// The degree of everything inside the components that bound a region from within it; checks each on the way.
     long inwards(std::uint32_t region, std::uint32_t around, std::map<std::uint32_t, Component>& components,
-                 std::map<std::uint32_t, long>& degree_of_region, const std::map<std::uint32_t, int>& sign_of_region,
-                 std::set<std::uint32_t>& done) {
+                 const std::map<std::uint32_t, long>& degree_of_region,
+                 const std::map<std::uint32_t, int>& sign_of_region, std::set<std::uint32_t>& done) {
         long degree = degree_of_region.count(region) != 0 ? degree_of_region.at(region) : 0;
         for (auto& [id, component] : components) {
             if (id == around || component.regions.count(region) == 0) continue;
@@ -427,7 +480,15 @@ private:
     ImplicitCheck& result_;
     std::vector<char> marked_;
     std::vector<std::uint32_t> star_first_, star_;
-    std::unique_ptr<Parts> regions_;
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> link_edges_;
+    struct LinkPoint {
+        std::uint32_t id, up;
+        bool inside;
+    };
+    std::vector<LinkPoint> link_;
+    static constexpr std::uint32_t nowhere = 0xffffffffu;
+    std::vector<std::uint32_t> place_in_link_;  ///< per point, and one for the cone over a rim
+    std::vector<std::uint32_t> part_;  ///< per point: component of W or of its complement, by one of its points
     std::uint32_t outside_ = 0;
     std::vector<VerifiedComponent> verified_;
     std::vector<std::pair<int, int>> forms_;  ///< genus and loops of each component

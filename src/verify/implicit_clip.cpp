@@ -2,6 +2,7 @@
 #include "verify/implicit_clip.h"
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -16,7 +17,7 @@ unsigned faces_of(const ImplicitComplex& complex, std::uint32_t p) { return comp
 
 bool close_rim(const ImplicitComplex& complex, std::uint32_t p, std::span<const std::uint32_t> star,
                const std::function<bool(std::uint32_t)>& inside,
-               std::map<std::uint32_t, std::vector<std::uint32_t>>& neighbours) {
+               std::vector<std::pair<std::uint32_t, std::uint32_t>>& link_edges) {
     const unsigned own = faces_of(complex, p);
     std::array<int, 6> changes{};
     for (const std::uint32_t tet : star) {
@@ -25,10 +26,8 @@ bool close_rim(const ImplicitComplex& complex, std::uint32_t p, std::span<const 
                 if (a >= b || a == p || b == p) continue;
                 const unsigned shared = own & faces_of(complex, a) & faces_of(complex, b);
                 if (shared == 0) continue;  // the edge (a, b) is not in the rim
-                for (const std::uint32_t c : {a, b}) {
-                    neighbours[c].push_back(no_point);
-                    neighbours[no_point].push_back(c);
-                }
+                link_edges.emplace_back(a, no_point);
+                link_edges.emplace_back(b, no_point);
                 for (unsigned face = 0; face < 6; ++face) {
                     if (((shared >> face) & 1u) != 0 && inside(a) != inside(b)) ++changes[face];
                 }

@@ -2,8 +2,8 @@
 // What is different where a surface may meet the box: links that are disks, loops in the faces, gradients reflected.
 #include <array>
 #include <functional>
-#include <map>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "verify/implicit_complex.h"
@@ -17,12 +17,12 @@ struct SlopeTriangle {
     int axis, slope;
 };
 
-/// Joins a new point, ImplicitComplex::no_point, to all points of the rim of the link of p. Returns whether p may join
-/// W as far as the rim tells: it changes between inside and outside twice in the face of the box that holds p, or once
-/// in each of the two; at a corner of the box, never.
+/// Adds edges from a new point, ImplicitComplex::no_point, to all points of the rim of the link of p. Returns whether p
+/// may join W as far as the rim tells: it changes between inside and outside twice in the face of the box that holds p,
+/// or once in each of the two; at a corner of the box, never.
 bool close_rim(const ImplicitComplex& complex, std::uint32_t p, std::span<const std::uint32_t> star,
                const std::function<bool(std::uint32_t)>& inside,
-               std::map<std::uint32_t, std::vector<std::uint32_t>>& neighbours);
+               std::vector<std::pair<std::uint32_t, std::uint32_t>>& link_edges);
 
 /// A point of T with both a sign and a neighbour of the other sign for each loop of the surface in the box's boundary.
 std::vector<std::uint32_t> loops_in_box_faces(const ImplicitComplex& complex);

@@ -15,6 +15,28 @@ constexpr std::uint32_t leaf_bit = 0x80000000u;
 
 }  // namespace
 
+std::size_t LatticePoints::slot_of(const Lattice& p) const {
+    std::uint64_t h = 1469598103934665603ull;
+    for (const std::uint32_t c : p) h = (h ^ c) * 0x9ddfea08eb382d69ull, h ^= h >> 32;
+    std::size_t slot = static_cast<std::size_t>(h) & (slots_.size() - 1);
+    while (slots_[slot] != free && points_[slots_[slot]] != p) slot = (slot + 1) & (slots_.size() - 1);
+    return slot;
+}
+
+std::uint32_t LatticePoints::add(const Lattice& p) {
+    std::size_t slot = slot_of(p);
+    if (slots_[slot] != free) return slots_[slot];
+    const auto number = static_cast<std::uint32_t>(points_.size());
+    points_.push_back(p);
+    if (2 * points_.size() <= slots_.size()) {
+        slots_[slot] = number;
+        return number;
+    }
+    slots_.assign(2 * slots_.size(), free);
+    for (std::uint32_t i = 0; i <= number; ++i) slots_[slot_of(points_[i])] = i;
+    return number;
+}
+
 BoxOfDoubles box_of(const ImplicitCertificate& certificate) {
     BoxOfDoubles box{};
     for (std::size_t a = 0; a < 3; ++a) {
@@ -56,7 +78,7 @@ double ImplicitComplex::place(std::size_t axis, std::uint32_t i) const {
 }
 
 std::array<double, 3> ImplicitComplex::place(std::uint32_t point) const {
-    return {place(0, points_[point][0]), place(1, points_[point][1]), place(2, points_[point][2])};
+    return {place(0, points()[point][0]), place(1, points()[point][1]), place(2, points()[point][2])};
 }
 
 BoxOfDoubles ImplicitComplex::box(const Lattice& low, const Lattice& high) const {
@@ -85,6 +107,7 @@ void ImplicitComplex::read_octree(const std::string& code) {
     std::size_t at = 0;
     read_cell(code, at, {0, 0, 0}, side());
     if (at != code.size()) refuse("the octree's text goes on after its end");
+    corner_count_ = static_cast<std::uint32_t>(points_.all().size());
 }
 
 void ImplicitComplex::read_cell(const std::string& code, std::size_t& at, const Lattice& low, std::uint32_t size) {
@@ -116,7 +139,7 @@ void ImplicitComplex::read_cell(const std::string& code, std::size_t& at, const 
     nodes_[node] = leaf_bit | static_cast<std::uint32_t>(leaves_.size());
     leaves_.push_back(leaf);
     for (unsigned k = 0; k < 8; ++k)
-        corners_[{low[0] + (k & 1u) * size, low[1] + ((k >> 1) & 1u) * size, low[2] + (k >> 2) * size}] = 1;
+        points_.add({low[0] + (k & 1u) * size, low[1] + ((k >> 1) & 1u) * size, low[2] + (k >> 2) * size});
 }
 
 std::uint32_t ImplicitComplex::leaf_at(const Lattice& p) const {
@@ -128,22 +151,11 @@ std::uint32_t ImplicitComplex::leaf_at(const Lattice& p) const {
     return nodes_[node] & ~leaf_bit;
 }
 
-std::uint32_t ImplicitComplex::point(const Lattice& p) {
-    const auto [found, added] = ids_.emplace(p, static_cast<std::uint32_t>(points_.size()));
-    if (added) points_.push_back(p);
-    return found->second;
-}
-
-std::uint32_t ImplicitComplex::find(const Lattice& p) const {
-    const auto found = ids_.find(p);
-    return found == ids_.end() ? no_point : found->second;
-}
-
 void ImplicitComplex::build_tets() {
     for (std::uint32_t i = 0; i < leaves_.size(); ++i) {
         const ClaimedLeaf leaf = leaves_[i];
         const std::uint32_t half = leaf.size / 2;
-        const std::uint32_t apex = point({leaf.low[0] + half, leaf.low[1] + half, leaf.low[2] + half});
+        const std::uint32_t apex = points_.add({leaf.low[0] + half, leaf.low[1] + half, leaf.low[2] + half});
         for (std::size_t axis = 0; axis < 3; ++axis) {
             Lattice upper = leaf.low;
             upper[axis] += leaf.size;
@@ -168,7 +180,7 @@ void ImplicitComplex::cone_square(std::uint32_t leaf, std::uint32_t apex, const 
             cone_square(leaf, apex, moved((k & 1u) * half, (k >> 1) * half), axis, upper, half);
         return;
     }
-    const std::uint32_t middle = point(moved(half, half));
+    const std::uint32_t middle = points_.add(moved(half, half));
     std::vector<std::uint32_t> ring;
     walk_edge(moved(0, 0), moved(size, 0), ring);
     walk_edge(moved(size, 0), moved(size, size), ring);
@@ -189,7 +201,7 @@ void ImplicitComplex::walk_edge(const Lattice& a, const Lattice& b, std::vector<
         length = std::max(length, a[i] > b[i] ? a[i] - b[i] : b[i] - a[i]);
     }
     if (length < 2 || !is_corner(middle)) {
-        ring.push_back(point(a));
+        ring.push_back(points_.add(a));
         return;
     }
     walk_edge(a, middle, ring);
@@ -197,20 +209,20 @@ void ImplicitComplex::walk_edge(const Lattice& a, const Lattice& b, std::vector<
 }
 
 void ImplicitComplex::settle_signs(const ImplicitCertificate& certificate) {
-    sign.assign(points_.size(), 0);
+    sign.assign(points().size(), 0);
     for (std::size_t i = 0; i < tets_.size(); ++i) {
         const int claimed = leaves_[leaf_of_tet_[i]].sign;
         if (claimed == 0) continue;
         for (const std::uint32_t p : tets_[i]) {
             if (sign[p] == -claimed) contradiction = "leaves around one point claim different signs";
-            sign[p] = claimed;
+            sign[p] = static_cast<std::int8_t>(claimed);
         }
     }
     for (const std::uint32_t p : points_from(certificate.negative_points, "negative_points")) {
         if (sign[p] > 0) contradiction = "a negative point lies in a leaf with a positive sign";
         sign[p] = -1;
     }
-    for (int& s : sign) {
+    for (std::int8_t& s : sign) {
         if (s == 0) s = 1;
     }
 }

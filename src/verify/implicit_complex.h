@@ -2,9 +2,7 @@
 // The checker's own octree, triangulation and W, made from what a certificate says.
 #include <array>
 #include <cstdint>
-#include <functional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "verify/implicit_certificate.h"
@@ -13,12 +11,21 @@
 namespace certa::verify {
 
 using Lattice = std::array<std::uint32_t, 3>;  ///< a point of the grid
-struct LatticeHash {
-    std::size_t operator()(const Lattice& p) const {
-        std::uint64_t h = 1469598103934665603ull;
-        for (const std::uint32_t c : p) h = (h ^ c) * 0x100000001b3ull;
-        return static_cast<std::size_t>(h ^ (h >> 31));
-    }
+
+/// Points of the grid, numbered in the order in which they were added. Open addressing: a table of numbers only.
+class LatticePoints {
+public:
+    LatticePoints() : slots_(1u << 10, free) {}
+    static constexpr std::uint32_t free = 0xffffffffu;
+    std::uint32_t add(const Lattice& p);
+    /// The number of a point, or `free`.
+    std::uint32_t find(const Lattice& p) const { return slots_[slot_of(p)]; }
+    const std::vector<Lattice>& all() const { return points_; }
+
+private:
+    std::size_t slot_of(const Lattice& p) const;
+    std::vector<Lattice> points_;
+    std::vector<std::uint32_t> slots_;
 };
 
 struct ClaimedLeaf {
@@ -51,12 +58,12 @@ public:
     using Tet = std::array<std::uint32_t, 4>;
     const std::vector<Tet>& tets() const { return tets_; }
     const std::vector<std::uint32_t>& leaf_of_tet() const { return leaf_of_tet_; }
-    const std::vector<Lattice>& points() const { return points_; }
-    std::uint32_t find(const Lattice& p) const;  ///< the point of T, or no_point
-    static constexpr std::uint32_t no_point = 0xffffffffu;
+    const std::vector<Lattice>& points() const { return points_.all(); }
+    std::uint32_t find(const Lattice& p) const { return points_.find(p); }  ///< the point of T, or no_point
+    static constexpr std::uint32_t no_point = LatticePoints::free;
 
     /// Signs of points: of the leaves around where claimed, else as the certificate lists them.
-    std::vector<int> sign;
+    std::vector<std::int8_t> sign;
     /// Order of marks: points of T.
     std::vector<std::uint32_t> marks;
     std::string contradiction;  ///< leaves around a point that claim different signs
@@ -64,7 +71,7 @@ public:
     /// The leaf that holds the unit cube above p.
     std::uint32_t leaf_at(const Lattice& p) const;
     /// Whether an octree edge or square with this midpoint is subdivided.
-    bool is_corner(const Lattice& p) const { return corners_.count(p) != 0; }
+    bool is_corner(const Lattice& p) const { return points_.find(p) < corner_count_; }
 
 private:
     void read_octree(const std::string& code);
@@ -74,7 +81,6 @@ private:
                      std::uint32_t size);
     void walk_edge(const Lattice& a, const Lattice& b, std::vector<std::uint32_t>& ring);
     void settle_signs(const ImplicitCertificate& certificate);
-    std::uint32_t point(const Lattice& p);
     std::vector<std::uint32_t> points_from(const std::vector<std::int64_t>& numbers, const char* what) const;
 
     std::array<std::int64_t, 3> first_, count_, exponent_;
@@ -82,9 +88,8 @@ private:
     bool clipped_ = false;
     std::vector<ClaimedLeaf> leaves_;
     std::vector<std::uint32_t> nodes_;  ///< preorder: first child's node, or leaf number with the top bit
-    std::unordered_map<Lattice, char, LatticeHash> corners_;
-    std::unordered_map<Lattice, std::uint32_t, LatticeHash> ids_;
-    std::vector<Lattice> points_;
+    LatticePoints points_;              ///< corners of leaves first
+    std::uint32_t corner_count_ = 0;
     std::vector<Tet> tets_;
     std::vector<std::uint32_t> leaf_of_tet_;
     friend class MeshOnComplex;

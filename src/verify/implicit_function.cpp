@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "verify/quick_enclosures.h"
+
 namespace certa::verify {
 namespace {
 
@@ -21,7 +23,8 @@ int sign_of(mpfi_srcptr a) {
 
 }  // namespace
 
-Enclosures::Enclosures(const ImplicitFunction& function) : function_(function), values_(function.steps().size()) {
+Enclosures::Enclosures(const ImplicitFunction& function)
+    : function_(function), quick_(std::make_unique<QuickEnclosures>(function)), values_(function.steps().size()) {
     for (Values& v : values_) {
         mpfi_init2(v.value, precision);
         for (auto& slope : v.slope) {
@@ -268,6 +271,17 @@ bool Enclosures::directly(const BoxOfDoubles& box, int axis, int sign) {
     if (!values_[function_.result()].defined) return false;
     mpfi_add(sum_, sum_, values_[function_.result()].value);
     return sign_of(sum_) == sign;
+}
+
+bool Enclosures::proves(const BoxOfDoubles& box, int axis, int sign) {
+    return quick_->proves(box, axis, sign) || on_parts(box, axis, sign, 0);
+}
+
+bool Enclosures::misses_zero(const BoxOfDoubles& box) {
+    for (const int sign : {1, -1}) {
+        if (quick_->proves_directly(box, -1, sign)) return true;
+    }
+    return directly(box, -1, 1) || directly(box, -1, -1);
 }
 
 bool Enclosures::on_parts(const BoxOfDoubles& box, int axis, int sign, int depth) {

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -74,7 +75,10 @@ struct BoxOfDoubles {
     std::array<double, 3> low, high;
 };
 
-/// One thread's enclosures of one function: value and gradient over boxes, with 100 bits.
+class QuickEnclosures;
+
+/// One thread's enclosures of one function: value and gradient over boxes, with 100 bits; in doubles where these
+/// suffice.
 class Enclosures {
 public:
     explicit Enclosures(const ImplicitFunction& function);
@@ -83,14 +87,14 @@ public:
     ~Enclosures();
 
     /// Whether f has this sign on the whole box: by its enclosure, the mean value form, or both on parts of the box.
-    bool proves_sign(const BoxOfDoubles& box, int sign) { return on_parts(box, -1, sign, 0); }
+    bool proves_sign(const BoxOfDoubles& box, int sign) { return proves(box, -1, sign); }
     /// Whether the derivative by this variable exists and has this sign on the whole box.
-    bool proves_slope(const BoxOfDoubles& box, int axis, int sign) { return on_parts(box, axis, sign, 0); }
+    bool proves_slope(const BoxOfDoubles& box, int axis, int sign) { return proves(box, axis, sign); }
 
     /// Value and gradient, NaN where undefined, of the middle of two enclosures in doubles: a guess.
     std::array<double, 4> guess(const std::array<double, 3>& place);
     /// Whether f has no zero on the box, by its enclosure or the mean value form.
-    bool misses_zero(const BoxOfDoubles& box) { return directly(box, -1, 1) || directly(box, -1, -1); }
+    bool misses_zero(const BoxOfDoubles& box);
     /// Whether f - t g has no zero on the box, by the mean value form. `other` encloses g.
     bool combination_misses_zero(Enclosures& other, double t, const BoxOfDoubles& box);
 
@@ -111,10 +115,12 @@ private:
     void unary(const ImplicitFunction::Step& step, const Values& a, Values& r, bool with_slopes);
     void binary(const ImplicitFunction::Step& step, const Values& a, const Values& b, Values& r, bool with_slopes);
     void raise(mpfi_ptr result, mpfi_srcptr base, long n);
+    bool proves(const BoxOfDoubles& box, int axis, int sign);
     bool on_parts(const BoxOfDoubles& box, int axis, int sign, int depth);
     bool directly(const BoxOfDoubles& box, int axis, int sign);
 
     const ImplicitFunction& function_;
+    std::unique_ptr<QuickEnclosures> quick_;
     std::vector<Values> values_;
     std::array<mpfi_t, 3> place_;
     mpfi_t outer_, t_, u_, sum_;

@@ -1,0 +1,53 @@
+#pragma once
+// Enclosures in doubles, tried before those by MPFI: most leaves are decided here, some thirty times faster.
+#include <mpfi.h>
+
+#include <array>
+#include <vector>
+
+#include "verify/implicit_function.h"
+
+namespace certa::verify {
+
+/// A closed interval of doubles. Results of operations are computed to nearest and widened by more than their rounding.
+struct Span {
+    double low = 0, high = 0;
+};
+
+/// One thread's enclosures of one function, with the interface of Enclosures as far as it is needed. Shares nothing
+/// with src/interval and src/expression; functions other than roots are MPFI's, rounded outward.
+class QuickEnclosures {
+public:
+    explicit QuickEnclosures(const ImplicitFunction& function);
+    QuickEnclosures(const QuickEnclosures&) = delete;
+    QuickEnclosures& operator=(const QuickEnclosures&) = delete;
+    ~QuickEnclosures();
+
+    /// As Enclosures::proves_sign (axis -1) and proves_slope. False where doubles do not suffice, or rounding is not to
+    /// nearest.
+    bool proves(const BoxOfDoubles& box, int axis, int sign) { return is_sound_ && on_parts(box, axis, sign, 0); }
+    /// Without parts: by the enclosure or the mean value form.
+    bool proves_directly(const BoxOfDoubles& box, int axis, int sign) { return is_sound_ && directly(box, axis, sign); }
+
+private:
+    using Kind = ImplicitFunction::Kind;
+    struct Values {
+        Span value;
+        std::array<Span, 3> slope{};
+        bool defined = false, smooth = false;
+    };
+    void evaluate(const std::array<Span, 3>& place, bool with_slopes);
+    void unary(const ImplicitFunction::Step& step, const Values& a, Values& r, bool with_slopes);
+    void binary(const ImplicitFunction::Step& step, const Values& a, const Values& b, Values& r, bool with_slopes);
+    bool outer(const ImplicitFunction::Step& step, const Span& a, Span& value, Span& slope);
+    Span by_mpfi(int (*function)(mpfi_ptr, mpfi_srcptr), const Span& a);
+    bool on_parts(const BoxOfDoubles& box, int axis, int sign, int depth);
+    bool directly(const BoxOfDoubles& box, int axis, int sign);
+
+    const ImplicitFunction& function_;
+    std::vector<Values> values_;
+    mpfi_t exact_, argument_;
+    bool is_sound_;
+};
+
+}  // namespace certa::verify
