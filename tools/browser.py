@@ -28,7 +28,7 @@ def find_chromium():
 class Browser:
     """`with Browser() as browser:` one page at a time; `errors` collects what pages complain about."""
 
-    def __init__(self, width=1280, height=860, scale=1, webgl=True, timeout=60):
+    def __init__(self, width=1280, height=860, scale=1, timeout=60):
         self.timeout = timeout
         self.errors = []
         self.buffer = b""
@@ -45,8 +45,6 @@ class Browser:
             os.close(fd)
         theirs = (to_read, from_write)
         command = [find_chromium(), *FLAGS, f"--user-data-dir={self.folder}", f"--window-size={width},{height}"]
-        if not webgl:
-            command += ["--disable-3d-apis"]
         # Chromium reads commands from descriptor 3 and answers on 4.
         self.process = subprocess.Popen(
             ["bash", "-c", f'exec "$@" 3<&{to_read} 4>&{from_write}', "bash", *command, "about:blank"],

@@ -118,7 +118,7 @@ chained() {
   local name=$1 title=$2 state=$3 function=$4
   shift 4
   run implicit "$function" "$@" --error 0.01 -o "$name.off" --json "$name.json" &&
-    run remesh "$name.off" --error 1% --output triangles --lines "$name.lines.vtu" -o "$name.few.off" --json "$name.few.json" &&
+    run remesh "$name.off" --error 0.4% --output triangles --lines "$name.lines.vtu" -o "$name.few.off" --json "$name.few.json" &&
     run check "$name.few.off" --against "$name.off" &&
     run conform "$name.few.off" -o "$name.solid.vtu" --json "$name.solid.json" &&
     run check "$name.solid.vtu" --against "$name.few.off" &&

@@ -10,6 +10,7 @@ import os
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 
 sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools"))
@@ -433,11 +434,38 @@ class PageTest(unittest.TestCase):
         self.assertIn("damaged", message)
 
     def test_without_webgl_there_is_a_plain_message(self):
-        with Browser(800, 600, webgl=False) as browser:
-            browser.open(self.page)
-            message = browser.evaluate("document.getElementById('message').innerText")
-            self.assertIn("WebGL", message)
-            self.assertFalse(browser.evaluate("document.getElementById('message').hidden"))
+        script = self.browser.call("Page.addScriptToEvaluateOnNewDocument", {"source": "HTMLCanvasElement.prototype.getContext = () => null;"})["identifier"]
+        type(self).loaded = False
+        try:
+            self.browser.open(self.page)
+        finally:
+            self.browser.call("Page.removeScriptToEvaluateOnNewDocument", {"identifier": script})
+        self.assertIn("WebGL", self.browser.evaluate("document.getElementById('message').innerText"))
+        self.assertTrue(self.browser.evaluate("getComputedStyle(document.getElementById('message')).display !== 'none'"))
+        self.assertTrue(self.browser.evaluate("document.getElementById('panel').hidden"))
+
+    def test_the_gallery_shows_pages_in_a_frame(self):
+        tools = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "..", "tools")
+        script = ('set -euo pipefail; results=.; source "$0"; section Tests; commands="certa view torus.ply <a&b>"; entry torus "2 304 triangles" page.html "file=1";'
+                  'commands="certa view block.mesh"; entry block tetrahedra page.html "file=2&clip=x,0.5"; write_gallery')
+        subprocess.run(["bash", "-c", script, os.path.join(tools, "gallery.sh")], check=True, stdout=subprocess.DEVNULL, cwd=self.folder)
+        type(self).loaded = False
+        self.browser.call("Page.navigate", {"url": "file://" + os.path.join(self.folder, "gallery.html")})
+        shown = lambda: [frame["frame"]["url"] + frame["frame"].get("urlFragment", "")
+                         for frame in self.browser.call("Page.getFrameTree")["frameTree"].get("childFrames", [])]
+        self.wait(lambda: shown() and shown()[0].endswith("page.html#file=1"))
+        commands = "document.querySelector('pre').textContent"
+        self.assertEqual(self.browser.evaluate(commands), "certa view torus.ply <a&b>")
+        self.browser.evaluate("document.querySelectorAll('nav a')[1].click()")
+        self.wait(lambda: shown()[0].endswith("page.html#file=2&clip=x,0.5"))
+        self.assertEqual(self.browser.evaluate(commands), "certa view block.mesh")
+        self.assertEqual(self.browser.evaluate("[...document.querySelectorAll('nav a.on b')].map(one => one.textContent)"), ["block"])
+
+    def wait(self, condition):
+        deadline = time.monotonic() + 60
+        while not condition():
+            self.assertLess(time.monotonic(), deadline)
+            time.sleep(0.05)
 
     def test_small_screens_and_touch(self):
         self.browser.resize(390, 780, 2)

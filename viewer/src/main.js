@@ -174,13 +174,12 @@ class App {
     const { choice } = this;
     document.documentElement.dataset.theme = choice.theme;
     for (const id of ['head', 'panel']) byId(id).hidden = choice.bare;
+    document.body.classList.toggle('bare', choice.bare);
     document.title = this.page.models.length > 1 ? `${choice.model.name} · ${this.page.title}` : this.page.title;
     this.view.up = choice.up;
     const frame = frameOf(choice.model, choice.ground);
     this.view.radius = frame.radius;
     this.view.centre = frame.centre;
-    const covers = choice.panel && !choice.bare;
-    this.view.inset = innerWidth > 640 ? [covers ? 264 : 0, 0] : [0, covers ? 0.55 * innerHeight : 0];
     this.stage.setTheme(this.theme);
     const relevant = (c) => c && [c.model.index, c.solid, c.field?.key, c.map, JSON.stringify(c.clip), c.segments, c.points,
       c.directions.map((one) => one?.key).join(), c.density, c.ground?.index, c.groundAs, c.balls, c.theme].join('|');
@@ -189,8 +188,18 @@ class App {
     this.renderFiles();
     this.panel.render();
     renderLegend(byId('legend'), choice, this.theme);
+    this.view.inset = this.coveredSides();
     byId('probe').hidden = true;
     this.redraw();
+  }
+
+  /// CSS pixels at the right and at the bottom that the controls, or on small screens the legend, cover.
+  coveredSides() {
+    const { choice } = this, isOpen = choice.panel && !choice.bare;
+    if (isOpen) return innerWidth > 640 ? [264, 0] : [0, 0.55 * innerHeight];
+    const isSmall = innerWidth <= 640 || innerHeight <= 480;
+    const legend = byId('legend').getBoundingClientRect();
+    return [0, isSmall && legend.height > 0 ? legend.height + 12 : 0];
   }
 
   renderFiles() {

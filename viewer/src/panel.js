@@ -186,10 +186,18 @@ export class Panel {
       clip ? element('div', { class: 'row' }, element('span', {}, 'Other side'), element('div', { class: 'pick' }, element('button', { onclick: () => set(flipped()) }, 'flip'))) : null);
   }
 
+  /// Follows a slider once per frame: it may move faster than large models can.
   drag(changes) {
-    this.dragging = true;
-    this.app.set(changes);
-    this.dragging = false;
+    const waits = this.wanted !== undefined;
+    this.wanted = { ...this.wanted, ...changes };
+    if (waits) return;
+    requestAnimationFrame(() => {
+      const { wanted } = this;
+      this.wanted = undefined;
+      this.dragging = true;
+      this.app.set(wanted);
+      this.dragging = false;
+    });
   }
 }
 

@@ -3,11 +3,36 @@
 /// Local corners of the face opposite each corner, counter-clockwise seen from outside a positive tetrahedron.
 const FACES = [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]];
 
-function sorted(a, b, c) {
-  if (a > b) [a, b] = [b, a];
-  if (b > c) [b, c] = [c, b];
-  if (a > b) [a, b] = [b, a];
-  return [a, b, c];
+/// Triangles by their three vertices in any order: chains of those with the same lowest one.
+class FaceTable {
+  constructor(vertices, faces) {
+    this.head = new Int32Array(vertices).fill(-1);
+    this.link = new Int32Array(faces).fill(-1);
+    this.middle = new Uint32Array(faces);
+    this.highest = new Uint32Array(faces);
+  }
+  /// The face of the chain from `from` on with these two other vertices, or -1.
+  follow(from, middle, highest) {
+    let k = from;
+    while (k >= 0 && (this.middle[k] !== middle || this.highest[k] !== highest)) k = this.link[k];
+    return k;
+  }
+  /// The last face that was added with these vertices, or -1.
+  find(a, b, c) {
+    const low = Math.min(a, b, c), high = Math.max(a, b, c);
+    return this.follow(this.head[low], a + b + c - low - high, high);
+  }
+  /// Another face with the vertices of one that was added, or -1.
+  findAnother(face) {
+    return this.follow(this.link[face], this.middle[face], this.highest[face]);
+  }
+  add(face, a, b, c) {
+    const low = Math.min(a, b, c), high = Math.max(a, b, c);
+    this.middle[face] = a + b + c - low - high;
+    this.highest[face] = high;
+    this.link[face] = this.head[low];
+    this.head[low] = face;
+  }
 }
 
 export class Solid {
@@ -18,60 +43,40 @@ export class Solid {
     const faces = 4 * this.count;
     this.neighbour = new Int32Array(faces).fill(-1);
     this.polygon = new Int32Array(faces).fill(-1);
-    const head = new Int32Array(positions.length / 3).fill(-1);
-    const link = new Int32Array(faces).fill(-1);
-    const find = (a, b, c, from) => {
-      for (let k = from; k >= 0; k = link[k]) {
-        const [, b2, c2] = sorted(...this.corners(k));
-        if (b2 === b && c2 === c) return k;
-      }
-      return -1;
-    };
+    const table = new FaceTable(positions.length / 3, faces);
+    const corners = [0, 0, 0];
     for (let face = 0; face < faces; ++face) {
-      const [a, b, c] = sorted(...this.corners(face));
-      const twin = find(a, b, c, head[a]);
+      this.writeCorners(face, corners, 0);
+      table.add(face, ...corners);
+      const twin = table.findAnother(face);
       if (twin >= 0 && this.neighbour[twin] < 0) {
         this.neighbour[face] = twin >> 2;
         this.neighbour[twin] = face >> 2;
       }
-      link[face] = head[a];
-      head[a] = face;
     }
     const triangles = surface.corners.length / 3;
     for (let t = 0; t < triangles; ++t) {
-      const [a, b, c] = sorted(surface.corners[3 * t], surface.corners[3 * t + 1], surface.corners[3 * t + 2]);
-      const face = find(a, b, c, head[a]);
-      if (face < 0) continue;
       const polygon = surface.polygons ? surface.polygons[t] : t;
-      this.polygon[face] = polygon;
-      const other = this.neighbour[face];
-      if (other < 0) continue;
-      for (let i = 0; i < 4; ++i)
-        if (this.neighbour[4 * other + i] === face >> 2 && this.isSame(4 * other + i, a, b, c)) this.polygon[4 * other + i] = polygon;
+      let face = table.find(surface.corners[3 * t], surface.corners[3 * t + 1], surface.corners[3 * t + 2]);
+      for (; face >= 0; face = table.findAnother(face)) this.polygon[face] = polygon;
     }
     this.centres = new Float32Array(3 * this.count);
     for (let t = 0; t < this.count; ++t)
       for (let i = 0; i < 4; ++i)
         for (let k = 0; k < 3; ++k) this.centres[3 * t + k] += positions[3 * tetrahedra[4 * t + i] + k] / 4;
   }
-  isSame(face, a, b, c) {
-    const [a2, b2, c2] = sorted(...this.corners(face));
-    return a === a2 && b === b2 && c === c2;
-  }
-  corners(face) {
-    const t = face & ~3, [i, j, k] = FACES[face & 3];
-    return [this.tetrahedra[t + i], this.tetrahedra[t + j], this.tetrahedra[t + k]];
-  }
-  /// The same into an array, without making one.
+  /// The corners of a face, into an array.
   writeCorners(face, out, at) {
     const t = face & ~3, order = FACES[face & 3];
     for (let k = 0; k < 3; ++k) out[at + k] = this.tetrahedra[t + order[k]];
   }
   /// Faces of one tetrahedron only, as corners.
   get hull() {
-    const corners = [];
-    for (let face = 0; face < 4 * this.count; ++face) if (this.neighbour[face] < 0) corners.push(...this.corners(face));
-    return Uint32Array.from(corners);
+    const faces = [];
+    for (let face = 0; face < 4 * this.count; ++face) if (this.neighbour[face] < 0) faces.push(face);
+    const corners = new Uint32Array(3 * faces.length);
+    faces.forEach((face, i) => this.writeCorners(face, corners, 3 * i));
+    return corners;
   }
   /// Faces of tetrahedra that are kept, towards one that is not or towards nothing.
   shownFaces(keeps) {

@@ -117,47 +117,55 @@ function addFacet(builder, rings, holePoints) {
   });
 }
 
+/// Unit normals of triangles; without area, 0.
+function triangleNormals(p, corners) {
+  const normals = new Float32Array(corners.length);
+  for (let i = 0; i < corners.length; i += 3) {
+    const a = 3 * corners[i], b = 3 * corners[i + 1], c = 3 * corners[i + 2];
+    const ux = p[b] - p[a], uy = p[b + 1] - p[a + 1], uz = p[b + 2] - p[a + 2];
+    const vx = p[c] - p[a], vy = p[c + 1] - p[a + 1], vz = p[c + 2] - p[a + 2];
+    const x = uy * vz - uz * vy, y = uz * vx - ux * vz, z = ux * vy - uy * vx;
+    const length = Math.sqrt(x * x + y * y + z * z) || 1;
+    normals[i] = x / length;
+    normals[i + 1] = y / length;
+    normals[i + 2] = z / length;
+  }
+  return normals;
+}
+
 /// Edges at which a surface bends sharply, ends, or branches, as pairs of vertices. `masks`: which edges are real.
 export function findSharpEdges(positions, corners, masks) {
-  const count = corners.length / 3;
-  const normals = new Float32Array(3 * count);
-  for (let t = 0; t < count; ++t) {
-    const n = ringNormal(positions, corners.subarray(3 * t, 3 * t + 3));
-    const length = Math.hypot(...n) || 1;
-    normals.set(n.map((x) => x / length), 3 * t);
-  }
+  const halves = corners.length;  // half-edge h is opposite corner h
+  const normals = triangleNormals(positions, corners);
+  const from = (h) => corners[h - (h % 3) + ((h + 1) % 3)], to = (h) => corners[h - (h % 3) + ((h + 2) % 3)];
   // Half-edges, linked by their smaller vertex.
-  const head = new Int32Array(positions.length / 3).fill(-1);
-  const link = new Int32Array(3 * count);
-  const ends = (h) => {
-    const t = Math.floor(h / 3), i = h % 3;
-    return [corners[3 * t + ((i + 1) % 3)], corners[3 * t + ((i + 2) % 3)]];
-  };
-  for (let h = 0; h < 3 * count; ++h) {
-    const [a, b] = ends(h);
-    const low = Math.min(a, b);
+  const head = new Int32Array(positions.length / 3).fill(-1), link = new Int32Array(halves);
+  const other = new Uint32Array(halves);
+  for (let h = 0; h < halves; ++h) {
+    const a = from(h), b = to(h), low = Math.min(a, b);
+    other[h] = Math.max(a, b);
     link[h] = head[low];
     head[low] = h;
   }
+  const isReal = (h) => !masks || (masks[(h / 3) | 0] & (1 << h % 3)) !== 0;
   const same = [], sharp = [];
-  const seen = new Uint8Array(3 * count);
-  for (let h = 0; h < 3 * count; ++h) {
+  const seen = new Uint8Array(halves);
+  for (let h = 0; h < halves; ++h) {
     if (seen[h]) continue;
-    const [a, b] = ends(h);
-    const high = Math.max(a, b);
+    const low = Math.min(from(h), to(h));
     same.length = 0;
-    for (let k = head[Math.min(a, b)]; k >= 0; k = link[k]) {
-      const [c, d] = ends(k);
-      if (Math.max(c, d) === high) same.push(k);
-    }
-    for (const k of same) seen[k] = 1;
+    for (let k = head[low]; k >= 0; k = link[k])
+      if (other[k] === other[h]) {
+        same.push(k);
+        seen[k] = 1;
+      }
     if (same.length === 2) {
-      const [s, t] = same.map((k) => 3 * Math.floor(k / 3));
-      const flip = ends(same[0])[0] === ends(same[1])[0] ? -1 : 1;
+      const s = same[0] - (same[0] % 3), t = same[1] - (same[1] % 3);
+      const flip = from(same[0]) === from(same[1]) ? -1 : 1;
       const cosine = normals[s] * normals[t] + normals[s + 1] * normals[t + 1] + normals[s + 2] * normals[t + 2];
       if (flip * cosine >= FEATURE_COSINE) continue;
     }
-    if (!masks || same.every((k) => masks[Math.floor(k / 3)] & (1 << k % 3))) sharp.push(a, b);
+    if (same.every(isReal)) sharp.push(from(h), to(h));
   }
   return Uint32Array.from(sharp);
 }
