@@ -100,9 +100,10 @@ py::dict conforming(const py::object& object, const py::object& against, const p
                     bool triangulate, const py::object& progress, unsigned threads) {
     ConformingCheckOptions options;
     set_options(frontend::conforming_check_options(), options, given);
-    const TetMesh mesh = make_tet_mesh(document_from(object));
-    const PiecewiseLinearComplex complex = document_from(against).complex;
-    return to_python(run({progress, threads}, [&](const RunControl& control) {
+    TetMesh mesh = make_tet_mesh(document_from(object));
+    PiecewiseLinearComplex complex = document_from(against).complex;
+    return to_python(run({progress, threads}, [mesh = std::move(mesh), complex = std::move(complex), options, repair,
+                                               triangulate](const RunControl& control) {
         if (!repair && !triangulate) return check_conforming(mesh, complex, options, control);
         const ConformOptions repairs{.triangulate = triangulate, .repair = repair, .planarity = options.planarity};
         return check_conforming(mesh, repair_complex(complex, repairs, control).complex, options, control);
@@ -113,29 +114,33 @@ py::dict surface(const py::object& object, const py::object& against, const py::
                  unsigned threads) {
     SurfaceCheckOptions options;
     set_options(frontend::surface_check_options(), options, given);
-    const PolygonMesh mesh = surface_of(document_from(object), "mesh");
+    PolygonMesh mesh = surface_of(document_from(object), "mesh");
     const MeshDocument reference = document_from(against);
     options.features = reference.complex.segments;
-    const PolygonMesh input = surface_of(reference, "against");
+    PolygonMesh input = surface_of(reference, "against");
     return to_python(run({progress, threads},
-                         [&](const RunControl& control) { return check_surface(mesh, input, options, control); }));
+                         [mesh = std::move(mesh), input = std::move(input), options](const RunControl& control) {
+                             return check_surface(mesh, input, options, control);
+                         }));
 }
 
 py::dict certificate(const py::object& object, const std::string& function, const std::string& proof,
                      const py::object& progress, unsigned threads) {
-    const TriangleMesh mesh = triangles_of(document_from(object));
-    return to_python(run({progress, threads},
-                         [&](const RunControl& control) { return check_implicit(mesh, function, proof, control); }));
+    TriangleMesh mesh = triangles_of(document_from(object));
+    return to_python(run({progress, threads}, [mesh = std::move(mesh), function, proof](const RunControl& control) {
+        return check_implicit(mesh, function, proof, control);
+    }));
 }
 
 py::dict function(const py::object& object, const std::string& text_of_function, const Doubles& box,
                   const py::object& progress, unsigned threads) {
-    const TriangleMesh mesh = triangles_of(document_from(object));
+    TriangleMesh mesh = triangles_of(document_from(object));
     const double* b = box.data();
     const Point3 low{b[0], b[1], b[2]}, high{b[3], b[4], b[5]};
-    const ImplicitMeshCheck check = run({progress, threads}, [&](const RunControl& control) {
-        return check_mesh_against(mesh, text_of_function, low, high, {}, control);
-    });
+    const ImplicitMeshCheck check =
+        run({progress, threads}, [mesh = std::move(mesh), text_of_function, low, high](const RunControl& control) {
+            return check_mesh_against(mesh, text_of_function, low, high, {}, control);
+        });
     py::dict out;
     out["verdict"] = name_of(check.verdict);
     out["reasons"] = check.reasons;

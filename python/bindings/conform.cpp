@@ -86,9 +86,10 @@ py::dict conform_to_python(const py::object& object, const py::dict& given, bool
     ConformOptions options;
     set_options(frontend::conform_options(), options, given);
     PiecewiseLinearComplex complex = document_from(object).complex;
-    Finished finished = run({progress, threads}, [&](const RunControl& control) {
-        return conform_and_check(std::move(complex), options, verify, control);
-    });
+    Finished finished =
+        run({progress, threads}, [complex = std::move(complex), options, verify](const RunControl& control) mutable {
+            return conform_and_check(std::move(complex), options, verify, control);
+        });
     ConformResult& result = finished.result;
     MeshDocument document =
         make_document(result.mesh, finished.input.complex, reference == "marker" ? Reference::marker : Reference::id,

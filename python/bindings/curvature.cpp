@@ -83,13 +83,14 @@ CurvatureOptions options_from(const py::dict& given) {
 py::dict curvature(const py::object& object, const py::dict& given, const py::object& solid, const py::object& progress,
                    unsigned threads) {
     const CurvatureOptions options = options_from(given);
-    const MeshDocument document = document_from(object);
+    MeshDocument document = document_from(object);
     const std::optional<std::int64_t> number = region_number(solid);
-    auto [surface, result] = run({progress, threads}, [&](const RunControl& control) {
-        TriangulatedSurface made = triangulate(document, number);
-        CurvatureResult curvatures = compute_curvature(made.mesh, options, control);
-        return std::pair{std::move(made), std::move(curvatures)};
-    });
+    auto [surface, result] =
+        run({progress, threads}, [document = std::move(document), number, options](const RunControl& control) {
+            TriangulatedSurface made = triangulate(document, number);
+            CurvatureResult curvatures = compute_curvature(made.mesh, options, control);
+            return std::pair{std::move(made), std::move(curvatures)};
+        });
     py::dict out;
     out["fields"] = fields_to_python(make_fields(result))["vertices"];
     out["outcome"] = name_of(result.outcome);
@@ -129,13 +130,14 @@ py::dict region_measures(const py::object& object, const py::dict& given, const 
                          const py::object& region, const py::object& progress, unsigned threads) {
     const CurvatureOptions asked = options_from(given);
     const MeshDocument document = document_from(object);
-    const TriangulatedSurface surface = triangulate(document, region_number(solid));
-    const Region place = region_from(region, surface, document);
+    TriangulatedSurface surface = triangulate(document, region_number(solid));
+    Region place = region_from(region, surface, document);
     RegionOptions options;
     options.rim = asked.rim == Rim::dual ? Rim::half : asked.rim;
     options.bounds = asked.bounds;
     options.max_curvature = asked.max_curvature;
-    const RegionResult result = run({progress, threads}, [&](const RunControl& control) {
+    const RegionResult result = run({progress, threads}, [surface = std::move(surface), place = std::move(place),
+                                                          options](const RunControl& control) {
         return compute_region_measures(surface.mesh, place, options, control);
     });
     py::dict out;

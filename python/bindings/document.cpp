@@ -94,16 +94,16 @@ std::optional<Format> format_from(const py::object& name) {
 
 py::dict read(const std::string& path, const py::object& format) {
     const ReadOptions options{.format = format_from(format)};
-    return to_python(run({py::none(), 0}, [&](const RunControl&) { return read_document(path, options); }));
+    return to_python(run({}, [path, options](const RunControl&) { return read_document(path, options); }));
 }
 
 void write(const std::string& path, const py::object& object, const py::object& format, const py::dict& given) {
     frontend::OutputOptions output;
     set_options(frontend::output_options().first(2), output, given);
-    const MeshDocument document = document_from(object);
+    MeshDocument document = document_from(object);
     const WriteOptions options{
         .format = format_from(format), .encoding = output.encoding, .msh_version_2 = output.msh_version_2};
-    run({py::none(), 0}, [&](const RunControl&) {
+    run({.may_leave = false}, [path, document = std::move(document), options](const RunControl&) {
         write_document(path, document, options);
         return true;
     });

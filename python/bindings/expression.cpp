@@ -47,8 +47,8 @@ Expression variable(const std::string& name) {
 
 /// Values and gradients at the rows of an (n, 3) array.
 py::tuple values(const Expression& function, const Doubles& places) {
-    const std::vector<Point3> points = points_from(places);
-    auto [results, gradients] = run({py::none(), 0}, [&](const RunControl& control) {
+    std::vector<Point3> points = points_from(places);
+    auto [results, gradients] = run({}, [function, points = std::move(points)](const RunControl& control) {
         std::pair<std::vector<double>, std::vector<Point3>> both;
         for (const Point3& p : points) {
             if (control.cancelled()) break;
@@ -75,7 +75,7 @@ void add_expressions(py::module_& module) {
         return operation(ternary, name)(a, b, c);
     });
     module.def("parse_expression", [](const std::string& source, const std::string& name) {
-        return run({py::none(), 0}, [&](const RunControl&) { return parse_expression(source, name); });
+        return run({}, [source, name](const RunControl&) { return parse_expression(source, name); });
     });
     module.def("format_expression", &format_expression);
     module.def("values", &values);

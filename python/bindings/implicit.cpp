@@ -90,9 +90,10 @@ py::dict implicit(const Expression& function, const Doubles& box, const py::dict
     options.certificate = options.engine == ImplicitEngine::growth;
     if (!memory_bytes.is_none()) options.memory_bytes = py::cast<std::uint64_t>(memory_bytes);
     const std::string source = format_expression(function);
-    Finished finished = run({progress, threads}, [&](const RunControl& control) {
-        return mesh_and_check(function, source, low, high, options, verify, control);
-    });
+    Finished finished =
+        run({progress, threads}, [function, source, low, high, options, verify](const RunControl& control) {
+            return mesh_and_check(function, source, low, high, options, verify, control);
+        });
     py::dict out = result_to_python(std::move(finished.result));
     out["function"] = source;
     out["check"] = finished.check ? py::object(to_python(*finished.check)) : py::none();

@@ -7,6 +7,7 @@ PYBIND11_MODULE(_certa, module) {
     namespace frontend = certa::frontend;
     module.doc() = "The library behind the package certa; call that.";
     add_errors(module);
+    add_waiting(module);
     add_documents(module);
     add_conform(module);
     add_curvature(module);

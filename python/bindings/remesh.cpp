@@ -88,11 +88,12 @@ py::dict remesh_to_python(const py::object& object, const py::dict& given, const
     set_options(frontend::remesh_options(), options, given);
     options.placement = placement;
     options.lines = lines;
-    const MeshDocument document = document_from(object);
+    MeshDocument document = document_from(object);
     options.features = elements_from<Edge>(features, ElementKind::edge, document.complex.positions.size());
-    Finished finished = run({progress, threads}, [&](const RunControl& control) {
-        return remesh_and_check(document, options, verify, control);
-    });
+    Finished finished =
+        run({progress, threads}, [document = std::move(document), options, verify](const RunControl& control) {
+            return remesh_and_check(document, options, verify, control);
+        });
     RemeshResult& result = finished.result;
     py::dict out;
     out["outcome"] = name_of(result.outcome);

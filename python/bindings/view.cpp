@@ -17,11 +17,12 @@ py::str view(const py::list& models, const std::string& title, const py::dict& g
         const auto pair = py::reinterpret_borrow<py::tuple>(entry);
         pages.push_back({py::cast<std::string>(pair[0]), document_from(pair[1])});
     }
-    return text(run({py::none(), 0}, [&](const RunControl&) { return format_view(pages, options); }));
+    return text(
+        run({}, [pages = std::move(pages), options](const RunControl&) { return format_view(pages, options); }));
 }
 
 void write_page(const std::string& path, const std::string& page) {
-    run({py::none(), 0}, [&](const RunControl&) {
+    run({.may_leave = false}, [path, page](const RunControl&) {
         write_text(path, page);
         return true;
     });
