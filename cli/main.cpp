@@ -7,6 +7,7 @@
 #include "commands.h"
 #include "frontend/option_table.h"
 #include "interrupt.h"
+#include "manual.h"
 
 namespace {
 
@@ -47,6 +48,18 @@ int run(int argc, char** argv) {
     certa::cli::add_info_command(app, action);
     certa::cli::add_convert_command(app, action);
     certa::cli::add_view_command(app, action);
+
+    const auto add_printer = [&](const char* name, const char* description, auto make) {
+        app.add_subcommand(name, description)->group("")->callback([&action, make] {
+            action = [make] {
+                std::fputs(make().c_str(), stdout);
+                return ExitCode::done;
+            };
+        });
+    };
+    add_printer("manual", "Print the manual page",
+                [&app] { return certa::cli::manual_page(app, certa::cli::version()); });
+    add_printer("completion", "Print the completion for bash", [&app] { return certa::cli::bash_completion(app); });
 
     if (argc < 2) {
         std::fputs(app.help().c_str(), stderr);

@@ -185,11 +185,16 @@ double parse_number(std::string_view name, std::string_view text) {
 Length parse_length(std::string_view name, std::string_view text) {
     const bool relative = text.ends_with('%');
     const std::string_view digits = relative ? text.substr(0, text.size() - 1) : text;
+    // A percentage is divided before it is rounded: 1e-7% is 1e-9 to the last bit.
     double value = 0.0;
-    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
-    if (error != std::errc() || end != digits.data() + digits.size() || !std::isfinite(value))
+    long double wide = 0.0L;
+    const char* const last = digits.data() + digits.size();
+    const auto [end, error] =
+        relative ? std::from_chars(digits.data(), last, wide) : std::from_chars(digits.data(), last, value);
+    if (relative) value = static_cast<double>(wide / 100.0L);
+    if (error != std::errc() || end != last || !std::isfinite(value))
         refuse(name, text, "a length: a number in the input's unit, or a percentage of the diagonal such as 2%");
-    return {relative ? value / 100.0 : value, relative};
+    return {value, relative};
 }
 
 std::uint64_t parse_count(std::string_view name, std::string_view text) {

@@ -8,6 +8,7 @@ sanitizer makes impossible (limits on the address space).
 import json
 import os
 import pty
+import re
 import resource
 import select
 import signal
@@ -155,6 +156,16 @@ class Usage(CommandTest):
         text = self.run_certa("conform", "--help").stdout.decode()
         for option in ("--protect needed|sharp|all", "--planarity LENGTH", "default 0.4", "--reference id|marker"):
             self.assertIn(option, text)
+
+    def test_manual_and_completion_name_every_option(self):
+        manual = self.run_certa("manual").stdout.decode()
+        completion = self.run_certa("completion").stdout.decode()
+        for command in ("conform", "curvature", "remesh", "implicit", "check", "info", "convert", "view"):
+            options = re.findall(r"--[a-z][a-z-]+", self.run_certa(command, "--help").stdout.decode())
+            self.assertGreater(len(options), 3)
+            for option in set(options) - {"--help"}:
+                self.assertIn(option.replace("-", "\\-"), manual)
+                self.assertIn(option, completion)
 
     def test_version_names_commit_and_libraries(self):
         done = self.run_certa("--version")
