@@ -276,12 +276,15 @@ std::optional<std::uint64_t> marked_count(const MeshDocument& document, std::str
 
 std::string describe_counts(const MeshDocument& document, std::size_t shields) {
     const PiecewiseLinearComplex& complex = document.complex;
-    std::uint64_t triangles = 0;
-    for (std::size_t p = 0; p < complex.polygon_count(); ++p)
+    std::uint64_t triangles = 0, quads = 0;
+    for (std::size_t p = 0; p < complex.polygon_count(); ++p) {
         triangles += complex.polygon_offsets[p + 1] - complex.polygon_offsets[p] == 3;
+        quads += complex.polygon_offsets[p + 1] - complex.polygon_offsets[p] == 4;
+    }
     JsonObject counts;
     counts.set("polygons", json_number(std::uint64_t{complex.polygon_count()}))
-        .set("triangles", json_number(triangles));
+        .set("triangles", json_number(triangles))
+        .set("quads", json_number(quads));
     counts.set("segments", json_number(std::uint64_t{complex.segments.size()}));
     counts.set("tetrahedra", json_number(std::uint64_t{document.tetrahedra.size()}));
     const auto facets = label_count(document, "facet", Location::polygons);

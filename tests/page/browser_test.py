@@ -372,6 +372,10 @@ class PageTest(unittest.TestCase):
         for colour in (bare, hidden):
             self.assertLess(max(colour[:3]) - min(colour[:3]), 60)
             self.assertEqual(colour[3], 255)
+        # A click names the line, or the umbilic, that it meets; not one behind the torus.
+        self.assertEqual(self.clicked(state + "0,90", (-1.283, 0, 0.283))["family"], "along k_max")
+        self.assertEqual(self.clicked(state + "0,90", (0, -1, 0.4)), {"vertex": "322", "umbilic_half_turns": "wedge"})
+        self.assertIsNone(self.clicked(state + "0,-90", (0, 1, 0.4)))
         alone = self.do("location.hash = 'file=2&theme=light&on=none'; new Promise(done => setTimeout(done, 30))")
         self.assertEqual(alone["ground"], 0)
         self.assertLess(alone["covered"], 0.5 * report["covered"])
@@ -380,16 +384,30 @@ class PageTest(unittest.TestCase):
         self.browser.evaluate("new Promise(done => setTimeout(done, 250))")
         self.assertIn("on=1&ground=glass", self.browser.evaluate("location.hash"))
 
-    def pixel(self, state, place):
-        """The colour where a place in space is seen."""
+    def seen_at(self, state, place):
+        """Where a place in space is drawn, from -1 to 1, rightwards and upwards."""
         self.do(f"clearTimeout(certa.pending); certa.written = null; history.replaceState(null, '', '#{state}'); certa.arrive()")
         return self.browser.evaluate(
-            "(() => { certa.report(); const gl = document.getElementById('stage').getContext('webgl2'); const pixel = new Uint8Array(4);"
-            "const { scale, origin } = certa.choice.model.entry, { camera } = certa.view;"
+            "(() => { const { scale, origin } = certa.choice.model.entry, { camera } = certa.view;"
             "const times = (m, p) => [0, 1, 2, 3].map(i => p.reduce((sum, x, k) => sum + m.elements[4 * k + i] * x, 0));"
             f"const p = times(camera.projectionMatrix, times(camera.matrixWorldInverse, [...{list(place)}.map((x, i) => (x - origin[i]) / scale), 1]));"
-            "const [x, y] = [gl.drawingBufferWidth, gl.drawingBufferHeight].map((size, i) => Math.floor((p[i] / p[3] + 1) / 2 * size));"
-            "gl.readPixels(x, y, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); return [...pixel]; })()")
+            "return [p[0] / p[3], p[1] / p[3]]; })()")
+
+    def pixel(self, state, place):
+        x, y = self.seen_at(state, place)
+        return self.browser.evaluate(
+            "(() => { certa.report(); const gl = document.getElementById('stage').getContext('webgl2'); const pixel = new Uint8Array(4);"
+            f"const at = [gl.drawingBufferWidth, gl.drawingBufferHeight].map((size, i) => Math.floor(([{x}, {y}][i] + 1) / 2 * size));"
+            "gl.readPixels(...at, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, pixel); return [...pixel]; })()")
+
+    def clicked(self, state, place):
+        """What a click there names, but for its place; None if nothing."""
+        x, y = self.seen_at(state, place)
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.mouse(kind, 500 * (1 + x), 350 * (1 - y), button="left", buttons=1, clickCount=1)
+        self.browser.settle()
+        return self.browser.evaluate("(() => { const probe = document.getElementById('probe'); if (probe.hidden) return null; const rows = Object.fromEntries("
+                                     "[...probe.querySelectorAll('dt')].map(n => [n.textContent, n.nextSibling.textContent])); delete rows.place; return rows; })()")
 
     def test_boxes_in_glass(self):
         self.write("torus.json", '{"command":"implicit","box":{"low":[-2,-2,-2],"high":[2,2,2]},"obstacles":[{"reason":"singular","low":[-0.2,-0.2,-0.2],"high":[0.2,0.2,0.2]},'

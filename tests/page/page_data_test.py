@@ -201,7 +201,7 @@ class ViewTest(unittest.TestCase):
         self.assertEqual(page.numbers(model["tetrahedra"]), [0, 1, 2, 3, 0, 2, 1, 4])
         self.assertEqual(page.numbers(page.field(0, "marker", "tetrahedra")["array"]), [1, 2])
         self.assertEqual(page.field(0, "marker", "tetrahedra")["kind"], "label")
-        self.assertEqual(model["counts"], {"polygons": 1, "triangles": 1, "segments": 0, "tetrahedra": 2, "regions": 2})
+        self.assertEqual(model["counts"], {"polygons": 1, "triangles": 1, "quads": 0, "segments": 0, "tetrahedra": 2, "regions": 2})
 
     def test_names_cannot_break_the_page(self):
         name = "</script><b>'\"&.off"

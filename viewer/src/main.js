@@ -1,7 +1,7 @@
 // The page: one state, kept in the address; what it leaves open is chosen from the model; everything else follows from it.
 // For tests and pictures `certa.report()` tells what was drawn.
 import { HOME, Turntable } from './camera.js';
-import { MAPS } from './colour.js';
+import { labelName, MAPS } from './colour.js';
 import { readPage } from './data.js';
 import { element, Panel, renderLegend, renderProbe, textOf } from './panel.js';
 import { frameOf, Stage } from './scene.js';
@@ -13,10 +13,12 @@ const THEMES = {
   light: {
     surface: [196, 208, 220], inside: [232, 190, 132], edge: [38, 52, 68], sharp: [40, 54, 70], segment: [26, 44, 66], point: [214, 92, 54], missing: [205, 208, 212],
     directions: [[24, 78, 148], [176, 42, 58], [40, 110, 70], [232, 132, 20], [120, 56, 160]], ball: [42, 120, 150], shield: [206, 62, 30],
+    directionsOnMaps: [[24, 78, 148], [176, 42, 58], [40, 110, 70]],
   },
   dark: {
     surface: [138, 158, 178], inside: [206, 154, 90], edge: [12, 17, 23], sharp: [14, 19, 25], segment: [226, 233, 240], point: [255, 150, 100], missing: [84, 90, 97],
     directions: [[140, 200, 255], [255, 140, 132], [160, 226, 170], [255, 196, 92], [216, 160, 255]], ball: [130, 200, 224], shield: [255, 138, 96],
+    directionsOnMaps: [[36, 104, 204], [208, 48, 62], [30, 136, 84]],
   },
 };
 
@@ -187,7 +189,7 @@ class App {
     if (choice.field && !choice.field.isLabel) this.stage.setRange(choice.field, choice.range);
     this.renderFiles();
     this.panel.render();
-    renderLegend(byId('legend'), choice, this.theme);
+    renderLegend(byId('legend'), choice, this.theme, this.stage.directionColours(choice));
     this.view.inset = this.coveredSides();
     byId('probe').hidden = true;
     this.redraw();
@@ -263,17 +265,18 @@ class App {
   }
 
   /// Numbers as in files and messages: from 1.
-  describe({ place, vertices, weights, polygon, tetrahedron }) {
+  describe({ place, vertices, weights, polygon, tetrahedron, segment = -1 }) {
     const { model } = this.choice;
     const rows = [];
     if (tetrahedron >= 0) rows.push(['tetrahedron', String(tetrahedron + 1)]);
     if (polygon >= 0) rows.push([model.counts.triangles === model.counts.polygons ? 'triangle' : 'polygon', String(polygon + 1)]);
-    rows.push(['vertices', vertices.map((v) => v + 1).join(', ')]);
+    if (segment >= 0) rows.push(['segment', String(segment + 1)]);
+    rows.push([vertices.length > 1 ? 'vertices' : 'vertex', vertices.map((v) => v + 1).join(', ')]);
     rows.push(['place', model.place(...place).map((x) => String(Number(x.toPrecision(6)))).join(', ')]);
     for (const field of model.fields) {
       if (field.components !== 1) continue;
-      if (field.location === 'tetrahedra' && tetrahedron >= 0) rows.push([field.name, textOf(field.values[tetrahedron])]);
-      if (field.location === 'polygons' && polygon >= 0) rows.push([field.name, textOf(field.values[polygon])]);
+      const element = { tetrahedra: tetrahedron, polygons: polygon, segments: segment, vertices: field.isLabel && vertices.length === 1 ? vertices[0] : -1 }[field.location];
+      if (element >= 0) rows.push([field.name, labelName(field, field.values[element]) ?? textOf(field.values[element])]);
       if (field.location === 'vertices' && !field.isLabel)
         rows.push([field.name, textOf(vertices.reduce((sum, v, i) => sum + weights[i] * field.values[v], 0))]);
     }

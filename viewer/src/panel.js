@@ -48,12 +48,12 @@ function section(title, ...children) {
 function countRows(model) {
   const { counts } = model;
   const rows = model.entry.overlay ? [['boxes', counts.boxes], ['clusters', counts.clusters]] : [['vertices', counts.vertices], ['added', counts.added], [counts.triangles === counts.polygons ? 'triangles' : 'polygons', counts.polygons],
-    ['facets', counts.facets], ['segments', counts.segments], ['tetrahedra', counts.tetrahedra], ['regions', counts.regions > 1 ? counts.regions : 0],
+    ['quads', counts.quads], ['facets', counts.facets], ['segments', counts.segments], ['tetrahedra', counts.tetrahedra], ['regions', counts.regions > 1 ? counts.regions : 0],
     ['umbilics', counts.umbilics], ['protecting balls', counts.balls], ['shield edges', counts.shields]];
   return rows.filter(([, count]) => count > 0).flatMap(([name, count]) => [element('dt', {}, name), element('dd', {}, grouped(count))]);
 }
 
-const PLACES = { vertices: 'per vertex', polygons: 'per facet', segments: 'per segment', tetrahedra: 'per tetrahedron' };
+const PLACES = { vertices: 'per vertex', polygons: 'per face', segments: 'per segment', tetrahedra: 'per tetrahedron' };
 
 /// `app`: resolved choice and `set(changes)`.
 export class Panel {
@@ -163,7 +163,7 @@ export class Panel {
       ...vectors.map((one) => {
         const slot = choice.directions.indexOf(one);
         const dash = element('span', { class: 'dash' });
-        dash.style.background = slot >= 0 ? css(this.app.theme.directions[slot]) : 'transparent';
+        dash.style.background = slot >= 0 ? css(this.app.stage.directionColours(choice)[slot]) : 'transparent';
         return check(one.name, slot >= 0, (on) => set({ directions: on ? [...chosen, one.key].slice(-3) : chosen.filter((key) => key !== one.key) }), dash);
       }),
       chosen.length > 0 ? slider(choice.density, 'Density of directions', (density) => this.drag({ density })) : null);
@@ -244,7 +244,7 @@ function labelLegend(field, theme) {
 
 const TITLES = { sign: 'critical clusters', family: 'lines of curvature', umbilic_half_turns: 'umbilics', source_kind: 'added points', cluster: 'critical clusters', reason: 'undecided boxes' };
 
-export function renderLegend(root, choice, theme) {
+export function renderLegend(root, choice, theme, directionColours) {
   const parts = [];
   const { field, marks, model } = choice;
   // Places of boxes have the boxes' colours.
@@ -255,7 +255,7 @@ export function renderLegend(root, choice, theme) {
     parts.push(element('h2', {}, title ?? one.name, ...(title ? [] : [' ', element('span', {}, PLACES[one.location])])));
     parts.push(...(one.isLabel ? labelLegend(one, theme) : rampLegend(choice)));
   }
-  const more = choice.directions.flatMap((one, i) => (one ? [element('li', {}, swatch(theme.directions[i], 'dash'), one.name)] : []));
+  const more = choice.directions.flatMap((one, i) => (one ? [element('li', {}, swatch(directionColours[i], 'dash'), one.name)] : []));
   if (choice.balls) {
     more.push(element('li', {}, swatch(theme.ball, 'dot'), 'protecting ball'));
     if (model.counts.shields > 0) more.push(element('li', {}, swatch(theme.shield, 'dash'), 'shield edge'));

@@ -8,7 +8,7 @@ import {
   BALL_FRAGMENT, BALL_VERTEX, FACE_FRAGMENT, FACE_VERTEX, LINE_FRAGMENT, LINE_VERTEX, POINT_FRAGMENT, POINT_VERTEX,
 } from './shaders.js';
 import { Solid } from './solid.js';
-import { buildSurface, findSharpEdges } from './surface.js';
+import { buildSurface, findSharpEdges, SHORT_BEND } from './surface.js';
 
 const NOTHING = -10;  // "no value" for the shaders
 const AXES = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1] };
@@ -50,6 +50,28 @@ function texture(bytes, rows) {
   result.magFilter = result.minFilter = NearestFilter;
   result.needsUpdate = true;
   return result;
+}
+
+/// Where a ray first meets the triangles of a mesh: distance, number (-1: nowhere) and weights of the corners.
+function firstHit(mesh, o, d) {
+  const p = mesh.geometry.getAttribute('position')?.array ?? [];
+  let best = Infinity, found = -1, weights = null;
+  for (let at = 0; at < p.length; at += 9) {
+    const ax = p[at + 3] - p[at], ay = p[at + 4] - p[at + 1], az = p[at + 5] - p[at + 2];
+    const bx = p[at + 6] - p[at], by = p[at + 7] - p[at + 1], bz = p[at + 8] - p[at + 2];
+    const nx = d[1] * bz - d[2] * by, ny = d[2] * bx - d[0] * bz, nz = d[0] * by - d[1] * bx;
+    const det = ax * nx + ay * ny + az * nz;
+    if (det === 0) continue;
+    const tx = o[0] - p[at], ty = o[1] - p[at + 1], tz = o[2] - p[at + 2];
+    const u = (tx * nx + ty * ny + tz * nz) / det;
+    if (u < 0 || u > 1) continue;
+    const qx = ty * az - tz * ay, qy = tz * ax - tx * az, qz = tx * ay - ty * ax;
+    const v = (d[0] * qx + d[1] * qy + d[2] * qz) / det;
+    if (v < 0 || u + v > 1) continue;
+    const distance = (bx * qx + by * qy + bz * qz) / det;
+    if (distance > 0 && distance < best) [best, found, weights] = [distance, at / 9, [1 - u - v, u, v]];
+  }
+  return { best, found, weights };
 }
 
 export class Stage {
@@ -97,7 +119,7 @@ export class Stage {
     if (!made) {
       const surface = buildSurface(model);
       made = { surface, solid: model.hasSolid ? new Solid(model.tetrahedra, model.positions, surface) : null };
-      if (made.solid && !model.hasSurface) surface.sharp = findSharpEdges(model.positions, made.solid.hull, null);
+      if (made.solid && !model.hasSurface) surface.sharp = findSharpEdges(model.positions, made.solid.hull, null, SHORT_BEND * model.radius);
       made.edge = this.typicalEdge(model, made.solid ? model.tetrahedra : surface.corners);
       this.prepared.set(model, made);
     }
@@ -363,6 +385,11 @@ export class Stage {
     this.showLines(this.segments, model, pairs, (i) => (i < given.length / 2 ? place(i) : NOTHING));
   }
 
+  /// The colours of directions: surfaces with a colour map are as light in the dark as they are by day.
+  directionColours(choice) {
+    return choice.field && !choice.field.isLabel && choice.field.location !== 'segments' ? this.theme.directionsOnMaps : this.theme.directions;
+  }
+
   /// Short lines at vertices spread evenly: at most one in each cell of a lattice.
   showDirections(model, choice) {
     const p = model.positions;
@@ -380,6 +407,7 @@ export class Stage {
       }
     }
     this.directions.forEach((mesh, slot) => {
+      mesh.material.uniforms.line.value.set(...this.directionColours(choice)[slot].map((c) => c / 255));
       const field = choice.directions[slot];
       const starts = new Float32Array(field ? 3 * chosen.length : 0), ends = new Float32Array(starts.length);
       if (field) {
@@ -440,6 +468,7 @@ export class Stage {
   }
 
   setTheme(theme) {
+    this.theme = theme;
     this.strong = theme.directions;
     const set = (uniform, rgb) => uniform.value.set(...rgb.map((c) => c / 255));
     const faces = this.faces.material.uniforms;
@@ -454,7 +483,6 @@ export class Stage {
     set(this.shields.material.uniforms.line, theme.shield);
     set(this.segments.material.uniforms.line, theme.segment);
     set(this.points.material.uniforms.line, theme.point);
-    this.directions.forEach((mesh, i) => set(mesh.material.uniforms.line, theme.directions[i]));
   }
 
   draw(view, edges) {
@@ -521,30 +549,46 @@ export class Stage {
     };
   }
 
+  /// The nearest segment, or vertex that stands out, within some pixels of a place on the screen and not behind `covered`.
+  pickLine(view, x, y, covered) {
+    const { model, segments, marks } = this.choice;
+    const p = model.positions, { clientWidth, clientHeight } = this.canvas;
+    const at = (v) => {
+      const place = new Vector3(p[3 * v], p[3 * v + 1], p[3 * v + 2]), far = place.distanceTo(eye);
+      place.project(view.camera);
+      return [((place.x - x) * clientWidth) / 2, ((place.y - y) * clientHeight) / 2, far];
+    };
+    const eye = new Vector3().setFromMatrixPosition(view.camera.matrix);
+    const best = { score: Infinity };
+    const offer = (score, far, found) => {
+      if (score < 7 && score < best.score && far < covered + 0.03 * view.radius) Object.assign(best, { score, ...found });
+    };
+    const pairs = segments ? model.array('segments') : [];
+    for (let s = 0; s < pairs.length; s += 2) {
+      if (!this.seen[pairs[s]] || !this.seen[pairs[s + 1]]) continue;
+      const a = at(pairs[s]), b = at(pairs[s + 1]);
+      const dx = b[0] - a[0], dy = b[1] - a[1], length = dx * dx + dy * dy;
+      const t = length > 0 ? Math.min(1, Math.max(0, -(a[0] * dx + a[1] * dy) / length)) : 0;
+      offer(Math.hypot(a[0] + t * dx, a[1] + t * dy), a[2] + t * (b[2] - a[2]), { segment: s / 2, vertices: [pairs[s], pairs[s + 1]], weights: [1 - t, t] });
+    }
+    if (marks)
+      for (let v = 0; v < marks.values.length; ++v) {
+        if (marks.values[v] === marks.hides) continue;
+        const [px, py, far] = at(v);
+        offer(Math.hypot(px, py) - 3, far, { segment: -1, vertices: [v], weights: [1] });
+      }
+    if (!best.vertices) return null;
+    const place = [0, 1, 2].map((k) => best.vertices.reduce((sum, v, i) => sum + best.weights[i] * p[3 * v + k], 0));
+    return { ...best, place, polygon: -1, tetrahedron: -1 };
+  }
+
   /// The element under a place on the screen ([-1, 1] squared), if any.
   pick(view, x, y) {
     const origin = new Vector3().setFromMatrixPosition(view.camera.matrix);
     const direction = new Vector3(x, y, 0.5).unproject(view.camera).sub(origin).normalize();
-    const p = this.faces.geometry.getAttribute('position').array;
     const o = origin.toArray(), d = direction.toArray();
-    let best = Infinity, found = -1, weights = null;
-    for (let i = 0; i < this.shown.count; ++i) {
-      const at = 9 * i;
-      const ax = p[at + 3] - p[at], ay = p[at + 4] - p[at + 1], az = p[at + 5] - p[at + 2];
-      const bx = p[at + 6] - p[at], by = p[at + 7] - p[at + 1], bz = p[at + 8] - p[at + 2];
-      const nx = d[1] * bz - d[2] * by, ny = d[2] * bx - d[0] * bz, nz = d[0] * by - d[1] * bx;
-      const det = ax * nx + ay * ny + az * nz;
-      if (det === 0) continue;
-      const tx = o[0] - p[at], ty = o[1] - p[at + 1], tz = o[2] - p[at + 2];
-      const u = (tx * nx + ty * ny + tz * nz) / det;
-      if (u < 0 || u > 1) continue;
-      const qx = ty * az - tz * ay, qy = tz * ax - tx * az, qz = tx * ay - ty * ax;
-      const v = (d[0] * qx + d[1] * qy + d[2] * qz) / det;
-      if (v < 0 || u + v > 1) continue;
-      const distance = (bx * qx + by * qy + bz * qz) / det;
-      if (distance > 0 && distance < best) [best, found, weights] = [distance, i, [1 - u - v, u, v]];
-    }
-    if (found < 0) return null;
+    const { best, found, weights } = firstHit(this.faces, o, d);
+    if (found < 0) return this.pickLine(view, x, y, this.choice.groundAs === 'solid' ? firstHit(this.ground, o, d).best : Infinity);
     return {
       place: o.map((c, k) => c + best * d[k]), weights, vertices: [...this.shown.vertices.subarray(3 * found, 3 * found + 3)],
       polygon: this.shown.polygon(found), tetrahedron: this.shown.tetrahedron(found),

@@ -3,6 +3,7 @@
 import { ShapeUtils, Vector2 } from 'three';
 
 const FEATURE_COSINE = Math.cos((40 * Math.PI) / 180);
+export const SHORT_BEND = 0.08;  // of the model's radius
 
 /// Newell's normal of a closed ring of vertices.
 function ringNormal(positions, ring) {
@@ -133,8 +134,29 @@ function triangleNormals(p, corners) {
   return normals;
 }
 
-/// Edges at which a surface bends sharply, ends, or branches, as pairs of vertices. `masks`: which edges are real.
-export function findSharpEdges(positions, corners, masks) {
+/// Of edges as pairs of vertices, those whose connected part is at least so long.
+function longParts(positions, pairs, least) {
+  const parent = new Map();
+  const root = (v) => {
+    while (parent.has(v)) v = parent.get(v);
+    return v;
+  };
+  for (let i = 0; i < pairs.length; i += 2) {
+    const a = root(pairs[i]), b = root(pairs[i + 1]);
+    if (a !== b) parent.set(Math.max(a, b), Math.min(a, b));
+  }
+  const lengths = new Map();
+  for (let i = 0; i < pairs.length; i += 2) {
+    const part = root(pairs[i]), a = 3 * pairs[i], b = 3 * pairs[i + 1];
+    const length = Math.hypot(positions[a] - positions[b], positions[a + 1] - positions[b + 1], positions[a + 2] - positions[b + 2]);
+    lengths.set(part, (lengths.get(part) ?? 0) + length);
+  }
+  return pairs.filter((v, i) => lengths.get(root(v)) >= least);
+}
+
+/// Edges at which a surface bends sharply, ends, or branches, as pairs of vertices. `masks`: which edges are real. Bends whose
+/// connected part is shorter than `least` are those of single slivers, and left out.
+export function findSharpEdges(positions, corners, masks, least) {
   const halves = corners.length;  // half-edge h is opposite corner h
   const normals = triangleNormals(positions, corners);
   const from = (h) => corners[h - (h % 3) + ((h + 1) % 3)], to = (h) => corners[h - (h % 3) + ((h + 2) % 3)];
@@ -148,7 +170,7 @@ export function findSharpEdges(positions, corners, masks) {
     head[low] = h;
   }
   const isReal = (h) => !masks || (masks[(h / 3) | 0] & (1 << h % 3)) !== 0;
-  const same = [], sharp = [];
+  const same = [], bends = [], rims = [];
   const seen = new Uint8Array(halves);
   for (let h = 0; h < halves; ++h) {
     if (seen[h]) continue;
@@ -165,9 +187,9 @@ export function findSharpEdges(positions, corners, masks) {
       const cosine = normals[s] * normals[t] + normals[s + 1] * normals[t + 1] + normals[s + 2] * normals[t + 2];
       if (flip * cosine >= FEATURE_COSINE) continue;
     }
-    if (same.every(isReal)) sharp.push(from(h), to(h));
+    if (same.every(isReal)) (same.length === 2 ? bends : rims).push(from(h), to(h));
   }
-  return Uint32Array.from(sharp);
+  return Uint32Array.from([rims, longParts(positions, bends, least)].flat());
 }
 
 /// { corners, polygons, masks, sharp, segments, points }: triangles, the polygon of each, which edges (opposite each corner)
@@ -209,6 +231,6 @@ export function buildSurface(model) {
       masks: Uint8Array.from(builder.masks), ...loose,
     };
   }
-  surface.sharp = findSharpEdges(positions, surface.corners, surface.masks);
+  surface.sharp = findSharpEdges(positions, surface.corners, surface.masks, SHORT_BEND * model.radius);
   return surface;
 }
