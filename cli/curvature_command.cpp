@@ -87,6 +87,7 @@ Json json_of(const ApproximationBound& b) {
                  {"relative_height", b.relative_height},
                  {"hypothesis", b.hypothesis_holds ? "holds" : "violated"},
                  {"calibrated", b.calibrated}};
+    if (b.hypothesis_holds) json["height"] = b.height, json["normal_angle_radians"] = b.normal_angle_radians;
     const auto add = [&](const char* key, const std::optional<double>& value) {
         json[key] = value ? Json(*value) : Json(nullptr);
     };
@@ -164,7 +165,8 @@ ExitCode measure_region(Session& session, const CurvatureArguments& arguments, c
         const std::string kappa =
             frontend::text_of(b.max_curvature) + (b.curvature_estimated ? " (estimated)" : " (given)");
         if (b.mean)
-            session.say("bound        " + frontend::text_of(*b.mean) + " on the mean measure, " +
+            session.say("bound        " + frontend::text_of(*b.mean) +
+                        " on the mean measure of the triangles that meet the region, " +
                         (b.curvature_estimated ? "if the largest curvature is " : "proved for the largest curvature ") +
                         kappa);
         else

@@ -108,8 +108,12 @@ struct ApproximationBound {
     double max_curvature = 0.0;       ///< kappa
     bool curvature_estimated = true;  ///< kappa comes from the data, not from the user: nothing is proved then
     double relative_height = 0.0;     ///< pi_M: largest triangle diameter times kappa
-    bool hypothesis_holds = false;    ///< pi_M <= 1/2 and the angle bound of Lemma 29 makes sense
-    /// Bounds on the error of the measures of B, from Theorem 25 with Lemmas 28 and 29; empty unless hypothesis_holds.
+    /// Every triangle's points lie within 1 / (2 kappa) of a corner, and the bound on its angle is below a right angle.
+    bool hypothesis_holds = false;
+    double height = 0.0;                ///< bound on the distance of B from the surface
+    double normal_angle_radians = 0.0;  ///< bound on the angle between the normals of B and of the surface
+    /// Bounds on the error of the measures of B (tensors: operator norm), proved in docs/curvature-bounds.md for meshes
+    /// closely inscribed in a surface whose curvatures are at most kappa; empty unless hypothesis_holds.
     std::optional<double> gaussian, mean, tensor, swapped_tensor;
     /// C kappa^2 (s + sd / kappa) epsilon: Theorem 13's form, with a constant calibrated on analytic surfaces, not
     /// proved. Bounds the mean measure and the tensors; per area: divide by area.

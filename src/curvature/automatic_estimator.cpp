@@ -1,9 +1,9 @@
 // `--estimator auto`: an estimator and a size from the noise that the data shows.
 //
 // Noise is the median, over a sample of vertices, of what a polynomial of degree 4 leaves over in three rings, in mean
-// edge lengths: creases and corners are few and do not move a median. The thresholds come from the torus experiments of
-// docs/performance.md: without noise small jets are best by far, and useless with it; kernels take moderate noise; wide
-// jets take more.
+// edge lengths: creases and corners are few and do not move a median. The numbers come from the experiments of
+// docs/performance.md on the torus and the ellipsoid: without noise small jets are best by far, and soon useless with
+// it; the corrected current under a smooth kernel takes noise of half an edge length, the more the wider it is.
 #include <algorithm>
 #include <cstdio>
 #include <vector>
@@ -14,20 +14,14 @@
 namespace certa::curvature {
 namespace {
 
-constexpr double clean = 0.01, moderate = 0.03, strong = 0.065;  // residual over mean edge length
+constexpr double clean = 0.002;  // residual over mean edge length
+/// Radius of the kernel in mean edge lengths.
+double kernel_radius(double noise) { return std::min(4.0 + 20.0 * noise, 8.0); }
 
 std::string text_of(double value) {
     char buffer[32];
     std::snprintf(buffer, sizeof buffer, "%.3g", value);
     return buffer;
-}
-
-/// The largest number of rings over which polynomials of degree 4 leave hardly more than noise; 3 if none does.
-std::uint64_t widest_window(const Surface& surface, const Cells& cells, double noise) {
-    constexpr double tolerance = 1.18;
-    std::uint64_t rings = 3;
-    while (rings < 9 && estimate_noise(surface, cells, rings + 1) <= tolerance * noise) ++rings;
-    return rings;
 }
 
 }  // namespace
@@ -61,18 +55,11 @@ CurvatureOptions choose_estimator(const Surface& surface, const Cells& cells, co
         statistics.choice = found + "below " + text_of(clean) + " jets of degree 4 over 2 rings are the most accurate";
         return chosen;
     }
-    const std::uint64_t rings = noise < moderate ? 3 : widest_window(surface, cells, noise);
-    if (rings >= (noise < strong ? 5U : 4U)) {
-        chosen.estimator = Estimator::jet, chosen.jet_degree = 4, chosen.rings = rings;
-        statistics.choice = found + "jets of degree 4 over " + std::to_string(rings) +
-                            " rings, the widest window that they fit, average most";
-    } else {
-        chosen.estimator = Estimator::normal_cycle, chosen.neighborhood = Neighborhood::ball;
-        chosen.weight = Weight::kernel2;
-        chosen.radius = {6.0 * surface.statistics.mean_edge_length / surface.diagonal, true};
-        statistics.choice = found + (noise < moderate ? "little" : "too much for the windows that jets fit") +
-                            "; the normal cycle under kernel2 over balls of 6 mean edge lengths is the most accurate";
-    }
+    const double radius = kernel_radius(noise);
+    chosen.estimator = Estimator::corrected, chosen.neighborhood = Neighborhood::ball, chosen.weight = Weight::kernel2;
+    chosen.radius = {radius * surface.statistics.mean_edge_length / surface.diagonal, true};
+    statistics.choice = found + "too much for small jets; the corrected normal current under kernel2 over balls of " +
+                        text_of(radius) + " mean edge lengths averages it out";
     return chosen;
 }
 

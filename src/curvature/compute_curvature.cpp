@@ -199,6 +199,7 @@ FactoryPointer choose_factory(const Surface& surface, const Cells& cells, const 
 void compute_bounds(const Surface& surface, const Cells& cells, const CurvatureOptions& options,
                     CurvatureResult& result, const RunControl& control) {
     result.bounds.resize(surface.positions.size());
+    const std::vector<TriangleShape> shapes = build_shapes(surface, control);
     Pool<RingWalker> pool;
     core::parallel_for(surface.used_vertices, 1024, control, [&](std::size_t begin, std::size_t end) {
         if (control.cancelled()) return;
@@ -206,10 +207,11 @@ void compute_bounds(const Surface& surface, const Cells& cells, const CurvatureO
         for (std::size_t v = begin; v < end; ++v) {
             const Index i = surface.vertex_sources[v];
             const std::vector<Index>& faces = walker->collect_faces(static_cast<Index>(v), options.rings);
-            const BoundTerms terms = sum_terms(surface, cells, faces, [&](Index f) { return walker->holds_face(f); });
             const double estimate = std::max(std::abs(result.k_min[i]), std::abs(result.k_max[i]));
             const double kappa = std::ldexp(options.max_curvature.value_or(estimate), surface.exponent);
-            result.bounds[i] = evaluate_bound(terms, kappa, !options.max_curvature, surface.exponent);
+            BoundSum sum(surface, cells, shapes, kappa);
+            sum.add_region(faces, [&](Index f) { return walker->holds_face(f); });
+            result.bounds[i] = sum.result(!options.max_curvature);
         }
         pool.give_back(std::move(walker));
     });

@@ -13,6 +13,7 @@ namespace {
 struct FaceCurrent {
     double area = 0.0, mean = 0.0, gaussian = 0.0;
     SymmetricTensor3 tensor;
+    Point3 vector_area;  ///< area times the face's own normal
 };
 
 FaceCurrent current_of(const Surface& surface, Index face) {
@@ -22,7 +23,8 @@ FaceCurrent current_of(const Surface& surface, Index face) {
     const Point3 middle = (1.0 / 3.0) * (u[0] + u[1] + u[2]);
     const Point3 a = x[1] - x[0], b = x[2] - x[0], da = u[1] - u[0], db = u[2] - u[0];
     FaceCurrent current;
-    current.area = 0.5 * dot(middle, cross(a, b));
+    current.vector_area = 0.5 * cross(a, b);
+    current.area = dot(middle, current.vector_area);
     // (u2 - u1) x x0 + (u0 - u2) x x1 + (u1 - u0) x x2, from x0.
     current.mean = 0.5 * dot(middle, cross(da, b) - cross(db, a));
     current.gaussian = 0.5 * dot(u[0], cross(u[1], u[2]));
@@ -52,7 +54,8 @@ public:
         FaceCurrent sum = region_.radius > 0.0 ? over_ball(vertex, row) : over_rings(vertex);
         row.sums.area = sum.area;
         row.sums.gaussian = sum.gaussian;
-        const Point3& normal = context_.surface.normals[vertex];
+        // The region's normal: that of the vertex alone is what noise turns most.
+        const Point3 normal = unit_or_zero(sum.vector_area);
         if (!(sum.area > 0.0) || normal == Point3{}) {
             row.flags |= vertex_flags::undefined;
             return;
@@ -70,6 +73,7 @@ private:
         sum.area += weight * current.area, sum.mean += weight * current.mean;
         sum.gaussian += weight * current.gaussian;
         add(sum.tensor, weight, current.tensor);
+        sum.vector_area = sum.vector_area + weight * current.vector_area;
     }
 
     FaceCurrent over_rings(Index vertex) {

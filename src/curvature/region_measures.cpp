@@ -35,10 +35,15 @@ public:
             if (surface_.hinges[h].left == f) add_hinge(sums, surface_.hinges[h]);
             if (surface_.vertex_faces[corners[i]].front() == f) add_vertex(sums, corners[i]);
         }
-        return area > 0.0;
+        return area > 0.0 || (surface_.face_geometry[f].area == 0.0 && region_.holds(middle_of(f), f));
     }
 
 private:
+    Point3 middle_of(Index f) const {
+        const auto& v = surface_.faces[f];
+        return (1.0 / 3.0) * (surface_.positions[v[0]] + surface_.positions[v[1]] + surface_.positions[v[2]]);
+    }
+
     double share(bool left, bool right) const {
         if (rim_ == Rim::closed) return left || right ? 1.0 : 0.0;
         if (rim_ == Rim::open) return left && right ? 1.0 : 0.0;
@@ -236,10 +241,12 @@ RegionResult compute_region_measures(const TriangleMesh& mesh, const Region& reg
         Marks inside(surface.faces.size());
         inside.clear();
         for (const Index f : faces) inside.mark(f);
-        const BoundTerms terms = sum_terms(surface, cells, faces, [&](Index f) { return inside.has(f); });
         const double kappa = options.max_curvature ? std::ldexp(*options.max_curvature, surface.exponent)
                                                    : estimate_curvature(surface, cells, faces);
-        result.bound = evaluate_bound(terms, kappa, !options.max_curvature, surface.exponent);
+        const std::vector<TriangleShape> shapes = build_shapes(surface, control);
+        BoundSum sum(surface, cells, shapes, kappa);
+        sum.add_region(faces, [&](Index f) { return inside.has(f); });
+        result.bound = sum.result(!options.max_curvature);
     }
     return result;
 }
