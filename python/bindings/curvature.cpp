@@ -121,7 +121,8 @@ Region region_from(const py::object& region, const TriangulatedSurface& surface,
         return faces_region(
             surface, py::cast<Integers>(region),
             document.tetrahedra.empty() ? document.complex.polygon_count() : document.tetrahedra.size());
-    return frontend::parse_region(py::cast<std::string>(region), [](const std::string&) -> std::vector<std::uint32_t> {
+    const std::string given = py::cast<std::string>(region);
+    return frontend::parse_region(given, [](const std::string&) -> std::vector<std::uint32_t> {
         throw frontend::OptionError("region: faces come as an array of their indices, not as a file");
     });
 }

@@ -9,6 +9,8 @@ namespace {
 
 py::object error_class(const char* name) { return py::module_::import("certa._errors").attr(name); }
 
+py::object spelled(std::string_view message) { return error_class("spelled")(text(message)); }
+
 template <class... Arguments>
 void raise(const char* name, Arguments&&... arguments) {
     const py::object type = error_class(name);
@@ -19,17 +21,17 @@ void translate(const std::exception_ptr& thrown) {
     try {
         if (thrown) std::rethrow_exception(thrown);
     } catch (const ExpressionError& error) {
-        raise("ExpressionError", text(error.what()), path_text(error.path()), error.line(), text(error.reason()),
+        raise("ExpressionError", spelled(error.what()), path_text(error.path()), error.line(), text(error.reason()),
               error.column());
     } catch (const IoError& error) {
-        raise("IoError", text(error.what()), path_text(error.path()), error.line(), text(error.reason()));
+        raise("IoError", spelled(error.what()), path_text(error.path()), error.line(), spelled(error.reason()));
     } catch (const InputError& error) {
-        raise("InputError", text(error.what()), to_python(error.defects()));
+        raise("InputError", spelled(error.what()), to_python(error.defects()));
     } catch (const frontend::OptionError& error) {
         Defect defect;
         defect.kind = DefectKind::option_out_of_range;
         defect.message = error.what();
-        raise("InputError", text(error.what()), to_python(std::vector<Defect>{defect}));
+        raise("InputError", spelled(error.what()), to_python(std::vector<Defect>{defect}));
     } catch (const InternalError& error) {
         raise("InternalError", text(error.what()));
     }
@@ -46,7 +48,7 @@ py::list to_python(const std::vector<ElementRef>& elements) {
 
 py::object to_python(const Defect& defect) {
     return error_class("Defect")(name_of(defect.kind), to_python(defect.elements), point(defect.place),
-                                 text(defect.message));
+                                 spelled(defect.message));
 }
 
 py::list to_python(const std::vector<Defect>& defects) {

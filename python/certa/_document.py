@@ -10,6 +10,15 @@ from numpy.typing import ArrayLike
 from . import _inputs
 
 _LOCATIONS = ("vertices", "polygons", "segments", "tetrahedra")
+_FLAT = (
+    "corners",
+    "polygon_offsets",
+    "facet_offsets",
+    "hole_offsets",
+    "point_markers",
+    "segment_markers",
+    "facet_markers",
+)
 
 
 class MeshDocument:
@@ -78,9 +87,9 @@ class MeshDocument:
             self._set_polygons(*_inputs.polygons(() if faces is None else faces))
         self.segments = _inputs.elements(() if segments is None else segments, 2, "segments")
         self.tetrahedra = _inputs.elements(() if tetrahedra is None else tetrahedra, 4, "tetrahedra")
-        self.point_markers = _markers(point_markers, "point_markers")
-        self.segment_markers = _markers(segment_markers, "segment_markers")
-        self.facet_markers = _markers(facet_markers, "facet_markers")
+        self.point_markers = _flat(point_markers, "point_markers")
+        self.segment_markers = _flat(segment_markers, "segment_markers")
+        self.facet_markers = _flat(facet_markers, "facet_markers")
         self.region_holes = _inputs.doubles(() if region_holes is None else region_holes, 3, "region_holes")
         self.region_seeds = _seeds(region_seeds)
         self.fields = _fields(fields)
@@ -110,6 +119,24 @@ class MeshDocument:
         self.facet_offsets = numpy.array(counts, dtype=numpy.int64)
         self.hole_offsets = numpy.array(hole_counts, dtype=numpy.int64)
         self.facet_holes = numpy.concatenate(holes) if holes else numpy.zeros((0, 3))
+
+    def _checked(self):
+        """The same with every attribute as the library takes it, whatever users have set them to."""
+        flat = {name: _flat(getattr(self, name), name) for name in _FLAT}
+        return self._from_library(
+            {
+                **flat,
+                "positions": _inputs.doubles(self.positions, 3, "positions"),
+                "segments": _inputs.elements(self.segments, 2, "segments"),
+                "tetrahedra": _inputs.elements(self.tetrahedra, 4, "tetrahedra"),
+                "facet_holes": _inputs.doubles(self.facet_holes, 3, "facet_holes"),
+                "region_holes": _inputs.doubles(self.region_holes, 3, "region_holes"),
+                "region_seeds": _seeds(self.region_seeds),
+                "fields": _fields(self.fields),
+                "reference": self.reference,
+                "remark": str(self.remark),
+            }
+        )
 
     @classmethod
     def _from_library(cls, values):
@@ -149,7 +176,7 @@ def split(corners, offsets):
     return numpy.split(corners, offsets[1:-1])
 
 
-def _markers(values, what):
+def _flat(values, what):
     array = _inputs.integers(() if values is None else values, what)
     if array.ndim != 1:
         raise ValueError(f"{what}: expected a flat array, not shape {array.shape}")
@@ -157,9 +184,7 @@ def _markers(values, what):
 
 
 def _seeds(rows):
-    if rows is None:
-        return numpy.zeros((0, 5))
-    array = numpy.asarray(rows)
+    array = numpy.asarray(() if rows is None else rows)
     if array.ndim == 2 and array.shape[1] in (3, 4):
         array = numpy.hstack([array, numpy.zeros((len(array), 5 - array.shape[1]))])
     return _inputs.doubles(array, 5, "region_seeds")
@@ -171,7 +196,9 @@ def _fields(places):
         if location not in result:
             raise ValueError(f"fields: '{location}' is none of {', '.join(_LOCATIONS)}")
         for name, values in fields.items():
-            array = numpy.asarray(values)
+            if not isinstance(name, str) or not name:
+                raise ValueError(f"fields: {name!r} is no name")
+            array = numpy.asarray(list(values) if isinstance(values, range) else values)
             if array.dtype.kind == "b":
                 array = array.astype(numpy.int64)
             if array.dtype.kind not in "iuf" or array.ndim not in (1, 2):

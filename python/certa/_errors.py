@@ -2,7 +2,28 @@
 
 from __future__ import annotations
 
+import functools
+import re
 from typing import List, NamedTuple, Optional, Tuple
+
+from . import _certa
+
+
+@functools.lru_cache(maxsize=None)
+def _arguments():
+    """The command's flags as arguments are written here."""
+    names = {"input-format": "format=", "output-format": "format=", "against": "against=", "level": "level="}
+    for rows in _certa.option_tables.values():
+        for row in rows:
+            names.setdefault(row["flag"], row["name"] + ("=" if row["kind"] else "=True"))
+    return names
+
+
+def spelled(message: str) -> str:
+    """A message of the library in Python's words: "use --repair" becomes "use repair=True"."""
+    return re.sub(
+        r"--([a-z]+(?:-[a-z]+)*)", lambda flag: _arguments().get(flag[1], flag[1].replace("-", "_")), message
+    )
 
 
 class ElementRef(NamedTuple):

@@ -173,7 +173,7 @@ def curvature(
     mesh, faces : see the package's help; of tetrahedra the boundary is measured
     region : str or indices of faces, optional
         measure this part of space or of the surface instead: "ball:x,y,z:R", "box:x,y,z:x,y,z",
-        "halfspace:x,y,z:nx,ny,nz", joined by & | ! and parentheses, or the indices of faces
+        "halfspace:x,y,z:nx,ny,nz", joined by & | ! and parentheses, or the indices of faces or a mask of them
     solid : int, optional
         of tetrahedra: the boundary of this region only
     {options}
@@ -192,7 +192,7 @@ def curvature(
     watched = watch(progress, threads)
     if region is not None:
         if not isinstance(region, str):
-            region = _inputs.integers(region, "region").reshape(-1)
+            region = _inputs.selected(region, "region")
         values = _certa.region_measures(document, options, solid, region, *watched)
         values["measures"] = CurvatureMeasures(**values["measures"])
         return RegionResult(**values)
@@ -310,7 +310,7 @@ def implicit(
     if isinstance(function, os.PathLike):
         function = pathlib.Path(function).read_text(encoding="utf-8-sig")
     expression = expression_of(function)
-    if not (isinstance(level, (int, float)) and level == 0):
+    if not (level is None or (isinstance(level, (int, float)) and level == 0)):
         expression = expression - expression_of(level)
     memory = available_memory() if memory_bytes is None else int(memory_bytes)
     corners = box_of(box)

@@ -34,8 +34,9 @@ def _array(values, what):
 def _from_objects(array, what):
     """Numbers of several kinds, among them integers beyond 64 bits."""
     entries = array.reshape(-1).tolist()
-    if not all(isinstance(entry, numbers.Real) and not isinstance(entry, bool) for entry in entries):
-        raise TypeError(f"{what}: expected numbers, but some entries are none")
+    for entry in entries:
+        if not isinstance(entry, numbers.Real) or isinstance(entry, bool):
+            raise TypeError(f"{what}: expected numbers, and {entry!r:.40} is {type(entry).__name__}")
     try:
         converted = [float(entry) for entry in entries]
     except OverflowError:
@@ -135,6 +136,14 @@ def padded_polygons(values):
     keep = numpy.ones(len(flat), dtype=bool)
     keep[[start - 1 for start, _ in starts]] = False
     return flat[keep], numpy.concatenate([[0], numpy.cumsum(counts)]).astype(numpy.int64)
+
+
+def selected(values, what):
+    """Indices, or a mask that is true for them."""
+    mask = numpy.asarray(values)
+    if mask.dtype.kind == "b" and mask.ndim == 1:
+        return numpy.flatnonzero(mask).astype(numpy.int64)
+    return integers(values, what).reshape(-1)
 
 
 def is_path(value):

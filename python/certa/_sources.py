@@ -11,7 +11,8 @@ from ._document import MeshDocument
 def as_document(mesh, faces=None, *, segments=None, name="mesh"):
     """A certa.MeshDocument of an object, of (positions, faces), or of the file at a path."""
     # Points with segments need no faces.
-    document = _document_of(mesh, () if faces is None and segments is not None and _is_rows(mesh) else faces, name)
+    alone = faces is None and segments is not None and _is_rows(mesh)
+    document = _document_of(mesh, () if alone else faces, name)._checked()
     if segments is None:
         return document
     more = _inputs.elements(segments, 2, "segments")
@@ -45,19 +46,44 @@ def _document_of(mesh, faces, name):
         return MeshDocument._from_library(_certa.read(_inputs.path_text(mesh), None))
     if isinstance(mesh, (tuple, list)) and len(mesh) == 2:
         return MeshDocument(mesh[0], mesh[1])
-    positions = getattr(mesh, "vertices", None)
-    if positions is None:
-        positions = getattr(mesh, "points", None)
-    around = getattr(mesh, "faces", None)
-    if positions is None or around is None or callable(positions) or callable(around):
+    if hasattr(mesh, "points") and hasattr(mesh, "cells") and not hasattr(mesh, "faces"):
+        return _document_of_cells(mesh, name)
+    positions = _first(mesh, "vertices", "points", "positions")
+    around = _first(mesh, "faces", "triangles")
+    if positions is None or around is None:
+        hint = "; points alone are certa.MeshDocument(positions)" if _is_rows(mesh) else ""
         raise TypeError(
-            f"{name}: expected (positions, faces), an object with .vertices and .faces or .points and .faces, a path "
-            f"or a certa.MeshDocument, not {type(mesh).__name__}"
+            f"{name}: expected positions and faces, an object with .vertices and .faces or .points and .faces, a path "
+            f"or a certa.MeshDocument, not {type(mesh).__name__} alone{hint}"
         )
     document = MeshDocument(positions)
     flat = getattr(around, "ndim", 2) == 1 and getattr(getattr(around, "dtype", None), "kind", "O") in "iu"
     document._set_polygons(*(_inputs.padded_polygons(around) if flat else _inputs.polygons(around)))
     return document
+
+
+def _first(mesh, *names):
+    for name in names:
+        value = getattr(mesh, name, None)
+        if value is not None and not callable(value):
+            return value
+    return None
+
+
+def _document_of_cells(mesh, name):
+    """Points with blocks of cells of one type each, as meshio has them."""
+    rows, segments, tetrahedra = [], [numpy.zeros((0, 2), dtype=numpy.int64)], [numpy.zeros((0, 4), dtype=numpy.int64)]
+    for block in mesh.cells:
+        kind, cells = getattr(block, "type", None), getattr(block, "data", None)
+        if kind == "line":
+            segments.append(_inputs.elements(cells, 2, "line cells"))
+        elif kind == "tetra":
+            tetrahedra.append(_inputs.elements(cells, 4, "tetra cells"))
+        elif kind in ("triangle", "quad", "polygon"):
+            rows += list(_inputs.integers(cells, f"{kind} cells"))
+        elif kind != "vertex":
+            raise TypeError(f"{name}: cells of type {kind!r} are none of line, triangle, quad, polygon and tetra")
+    return MeshDocument(mesh.points, rows, segments=numpy.concatenate(segments), tetrahedra=numpy.concatenate(tetrahedra))
 
 
 def watch(progress, threads):
