@@ -135,16 +135,13 @@ PiecewiseLinearComplex repaired(Session& session, const ConformArguments& argume
     return std::move(result.complex);
 }
 
-/// Protecting balls are no promise: only formats with named arrays carry their radii.
 void write_mesh(Session& session, const ConformArguments& arguments, const ConformResult& result,
                 const PiecewiseLinearComplex& complex) {
-    const FileArgument& output = arguments.output;
-    const Format format = output.format ? *output.format : *format_of(output.path);
     MeshDocument document =
         make_document(result.mesh, complex, arguments.output_options.reference, result.region_attributes);
-    if (!result.ball_radii.empty() && (format == Format::vtu || format == Format::msh))
+    if (!result.ball_radii.empty())
         document.fields.push_back({"ball_radius", Location::vertices, 1, result.ball_radii});
-    session.write(output, document, arguments.output_options);
+    session.write(arguments.output, document, arguments.output_options);
 }
 
 ExitCode run_conform(Session& session, const ConformArguments& arguments) {

@@ -114,8 +114,8 @@ void add_structure_problems(const MeshDocument& document, const Shape& shape, Fo
 }
 
 bool is_label(const Field& field) {
-    constexpr std::array<std::string_view, 7> labels{"region",      "facet",        "segment",         "marker",
-                                                     "source_kind", "source_index", "region_attribute"};
+    constexpr std::array<std::string_view, 8> labels{"region",      "facet",        "segment",          "marker",
+                                                     "source_kind", "source_index", "region_attribute", "ball_radius"};
     return std::find(labels.begin(), labels.end(), field.name) != labels.end();
 }
 
