@@ -251,8 +251,10 @@ ExitCode run_implicit(Session& session, const ImplicitArguments& arguments) {
     options["error"] = settings.error ? Json(*settings.error) : Json(nullptr);
     options["hausdorff"] = settings.hausdorff ? Json(*settings.hausdorff) : Json(nullptr);
     options["engine"] = arguments.engine;
-    const bool certifies = arguments.engine == "growth";
-    if (!certifies) settings.engine = ImplicitEngine::plantinga_vegter;
+    const bool certifies = arguments.engine != "plantinga-vegter";
+    settings.engine = !certifies                     ? ImplicitEngine::plantinga_vegter
+                      : arguments.engine == "thesis" ? ImplicitEngine::thesis
+                                                     : ImplicitEngine::growth;
     if (!certifies && !arguments.certificate.empty())
         throw UsageError("the engine " + arguments.engine + " writes no certificate");
     settings.memory_bytes = available_memory();
@@ -393,8 +395,10 @@ void add_implicit_command(CLI::App& app, Action& action) {
         ->add_option("--hausdorff", arguments->hausdorff,
                      "prove that mesh and zero set are within this length of each other; the mesh follows from it")
         ->type_name("LENGTH");
-    command->add_option("--engine", arguments->engine, "growth or plantinga-vegter, which writes no certificate")
-        ->check(CLI::IsMember({"growth", "plantinga-vegter"}))
+    command
+        ->add_option("--engine", arguments->engine,
+                     "growth, plantinga-vegter (writes no certificate) or thesis (W by its watershed, for comparison)")
+        ->check(CLI::IsMember({"growth", "plantinga-vegter", "thesis"}))
         ->type_name("ENGINE");
     command->add_option("--certificate", arguments->certificate, "write the certificate, JSON, for `check`")
         ->type_name("FILE");

@@ -135,6 +135,7 @@ const char* name_of(ImplicitObstacle::Reason reason);
 enum class ImplicitEngine : std::uint8_t {
     growth,            ///< this project's: W by free growth, with a certificate
     plantinga_vegter,  ///< subdivision by small normal variation: the same claim by another theorem, no certificate
+    thesis,            ///< as growth, with W by the thesis's watershed: for comparison; closed surfaces only
 };
 const char* name_of(ImplicitEngine engine);
 

@@ -37,7 +37,8 @@ public:
           error_(options.error),
           hausdorff_(options.hausdorff),
           memory_bytes_(options.memory_bytes),
-          uncertified_(options.uncertified) {
+          uncertified_(options.uncertified),
+          watershed_(options.engine == ImplicitEngine::thesis) {
         limits_.max_cells = options.max_cells.value_or(std::uint64_t{1} << 31);
         const auto deepest = static_cast<std::uint64_t>(tree_.max_depth());
         limits_.max_depth = static_cast<int>(std::min(options.max_depth.value_or(deepest), deepest));
@@ -63,11 +64,10 @@ public:
             if (triangulation) {
                 Triangulation next(tree_, field_, signs_, *triangulation, split);
                 triangulation = std::move(next);
-                growth = grow(*triangulation, links);
             } else {
-                triangulation.emplace(tree_, field_, signs_);
-                growth = grow(*triangulation, links);
+                triangulation.emplace(tree_, field_, signs_, watershed_);
             }
+            growth = watershed_ ? grow_watershed(*triangulation, sizes_of_values()) : grow(*triangulation, links);
             Findings findings = check_conditions(tree_, *triangulation, growth, clusters, tape_, control_);
             if (findings.offenders.empty()) {
                 conclude(*triangulation, growth, findings);
@@ -83,16 +83,28 @@ public:
     }
 
 private:
+    /// |f| at the points of the tree, in doubles; what is no number is larger than everything.
+    const std::vector<double>& sizes_of_values() {
+        while (sizes_.size() < tree_.points().size()) {
+            const double size =
+                std::fabs(field_.value(tree_.grid().place(tree_.points()[static_cast<std::uint32_t>(sizes_.size())])));
+            sizes_.push_back(std::isnan(size) ? HUGE_VAL : size);
+        }
+        return sizes_;
+    }
+
     /// Bytes of the next round, from peaks measured on large surfaces: cells and their corners, and for every open leaf
     /// the tetrahedra, stars and links of two leaves.
     bool is_too_large() const {
         if (!memory_bytes_) return false;
         std::uint64_t open = 0;
         for (const Cell& cell : tree_.cells()) open += cell.is_leaf() && cell.known.sign == 0 ? 1 : 0;
-        return 200 * tree_.cells().size() + 8000 * open > *memory_bytes_;
+        // The watershed has all of T, not only what is near open leaves.
+        return 200 * tree_.cells().size() + 8000 * (watershed_ ? tree_.cells().size() : open) > *memory_bytes_;
     }
 
     void count() {
+        result_.statistics.evaluations = tape_.enclosures() + field_.uncounted();
         result_.statistics.cells = tree_.cells().size();
         for (const std::uint32_t leaf : tree_.leaves()) {
             ++result_.statistics.leaves;
@@ -167,7 +179,8 @@ private:
     bool certificate_;
     std::optional<double> error_, hausdorff_;
     std::optional<std::uint64_t> memory_bytes_;
-    bool uncertified_;
+    bool uncertified_, watershed_;
+    std::vector<double> sizes_;  ///< per point
     Limits limits_;
     std::vector<Triangulation::PointSign> signs_;
     ImplicitResult result_;
@@ -223,6 +236,9 @@ ImplicitResult mesh_implicit(const Expression& function, const Point3& low, cons
                              "plantinga_vegter takes neither clip nor hausdorff: use the engine growth");
         return implicit::mesh_by_subdivision(function, grid, options, control);
     }
+    if (options.engine == ImplicitEngine::thesis && options.clip)
+        implicit::refuse(DefectKind::option_out_of_range,
+                         "the thesis's watershed is for closed surfaces: use the engine growth with clip");
     const std::vector<Expression> factors = implicit::factors_of(function);
     if (!factors.empty() && !options.hausdorff) {
         ImplicitOptions certain = options;
@@ -234,7 +250,11 @@ ImplicitResult mesh_implicit(const Expression& function, const Point3& low, cons
     return implicit::certify_whole(function, grid, options, control);
 }
 
-const char* name_of(ImplicitEngine engine) { return engine == ImplicitEngine::growth ? "growth" : "plantinga-vegter"; }
+const char* name_of(ImplicitEngine engine) {
+    return engine == ImplicitEngine::growth   ? "growth"
+           : engine == ImplicitEngine::thesis ? "thesis"
+                                              : "plantinga-vegter";
+}
 
 const char* name_of(ImplicitVerdict verdict) {
     switch (verdict) {

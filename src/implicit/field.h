@@ -47,6 +47,8 @@ public:
     const expression::Jet<double>& slope(const Point3& place) {
         return doubles_.evaluate<1>({place.x, place.y, place.z});
     }
+    /// Enclosures that the tape has not been told of yet.
+    std::uint64_t uncounted() const { return count_; }
     /// Value, gradient and Hessian in doubles.
     const expression::Jet<double>& jet(const Point3& place);
 

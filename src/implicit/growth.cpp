@@ -1,8 +1,9 @@
 // Free growth of W from the surface of sign changes, breadth first: a point that cannot join is tried again when a
 // point of its link and sign has joined. The thesis's watershed (1.7.1) follows descending edges instead, which makes W
-// about {|f| < c} and far larger near critical values; nothing in Lemma 51 needs that.
+// about {|f| < c} and far larger near critical values; nothing in Lemma 51 needs that. It is here for comparison.
 #include "implicit/growth.h"
 
+#include <algorithm>
 #include <bit>
 #include <deque>
 
@@ -233,6 +234,35 @@ Growth grow(const Triangulation& triangulation, std::span<const char> favoured) 
     LinkCache links;
     links.begin_round(triangulation);
     return Grower(triangulation, links, favoured).run();
+}
+
+Growth grow_watershed(const Triangulation& triangulation, std::span<const double> sizes) {
+    Growth growth;
+    growth.marked.assign(triangulation.point_count(), 0);
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t p = 0; p < triangulation.point_count(); ++p) {
+        if (triangulation.may_join(p)) order.push_back(p);
+    }
+    const auto is_smaller = [&](std::uint32_t p, std::uint32_t q) {
+        return sizes[p] != sizes[q] ? sizes[p] < sizes[q] : p < q;
+    };
+    std::sort(order.begin(), order.end(), is_smaller);
+    LinkTest test(triangulation.point_count());
+    for (const std::uint32_t p : order) {
+        // Points that joined are smaller: with all smaller ones marked, the test is about the lower link of p.
+        const auto blocks = [&](std::uint32_t q) {
+            return triangulation.sign(q) == triangulation.sign(p) && !growth.marked[q] && is_smaller(q, p);
+        };
+        const auto star = triangulation.around(p);
+        const bool blocked = std::any_of(star.begin(), star.end(), [&](std::uint32_t t) {
+            const auto& points = triangulation.tetrahedra()[t];
+            return std::any_of(points.begin(), points.end(), blocks);
+        });
+        if (blocked || !test.may_join(triangulation, growth.marked, p)) continue;
+        growth.marked[p] = 1;
+        growth.order.push_back(p);
+    }
+    return growth;
 }
 
 }  // namespace certa::implicit

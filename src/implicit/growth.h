@@ -54,6 +54,10 @@ Growth grow(const Triangulation& triangulation, LinkCache& links);
 /// Points with a mark in `favoured` (per point) go first: where fronts meet and stop, it is elsewhere.
 Growth grow(const Triangulation& triangulation, std::span<const char> favoured);
 
+/// The thesis's watershed (Part III, 1.7.1; Lemma 52): in the order of their sizes |f(p)|, ties by number, points join
+/// whose smaller neighbours of their sign have all joined, if they may: those that flow into no critical point.
+Growth grow_watershed(const Triangulation& triangulation, std::span<const double> sizes);
+
 /// Whether one point may join now; the test of the definition above.
 class LinkTest {
 public:

@@ -45,6 +45,8 @@ public:
         }
         const auto t = ratio({center[0].lo, center[1].lo, center[2].lo});
         if (!t) return false;
+        g_.tape.count_enclosures(2);
+        h_.tape.count_enclosures(2);
         const std::array<Interval, 6> bend_g = g_.jets.evaluate<2>(box).hessian,
                                       bend_h = h_.jets.evaluate<2>(box).hessian;
         const Jet<Interval>&at_g = g_.jets.evaluate<1>(center), &at_h = h_.jets.evaluate<1>(center);
@@ -72,7 +74,8 @@ private:
     }
 
     struct Function {
-        explicit Function(const expression::Tape& tape) : field(tape), jets(tape) {}
+        explicit Function(const expression::Tape& of) : tape(of), field(of), jets(of) {}
+        const expression::Tape& tape;
         Field field;
         expression::Workspace<Interval> jets;
     };
@@ -187,6 +190,7 @@ private:
     void join(std::uint64_t surfaces) {
         result_.verdict = surfaces == 0 ? ImplicitVerdict::empty : ImplicitVerdict::certified;
         result_.isotopic = surfaces < 2 && !options_.clip;
+        for (const expression::Tape& tape : tapes_) result_.statistics.evaluations += tape.enclosures();
         const expression::Tape tape(function_);
         Field whole(tape);
         std::vector<const ImplicitResult*> parts;
@@ -209,6 +213,7 @@ private:
                 result_.triangle_components.push_back(first_component + part.triangle_components[t]);
             }
             ImplicitStatistics& sum = result_.statistics;
+            sum.evaluations += part.statistics.evaluations;
             sum.cells += part.statistics.cells;
             sum.leaves += part.statistics.leaves;
             sum.open_leaves += part.statistics.open_leaves;

@@ -41,7 +41,7 @@ public:
             result_.verdict = result_.components.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
         }
         result_.statistics.cells = tree_.cells().size();
-        result_.statistics.evaluations = tape_.enclosures();
+        result_.statistics.evaluations = tape_.enclosures() + field_.uncounted();
         for (const std::uint32_t leaf : tree_.leaves()) {
             ++result_.statistics.leaves;
             result_.statistics.open_leaves += tree_.cell(leaf).known.sign == 0 ? 1 : 0;

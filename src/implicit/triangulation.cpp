@@ -10,14 +10,15 @@
 
 namespace certa::implicit {
 
-Triangulation::Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs) {
+Triangulation::Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs, bool whole) : whole_(whole) {
     choose_active(tree);
     is_new_.assign(active_.size(), 1);
     build_rest(tree, field, signs, nullptr);
 }
 
 Triangulation::Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs, const Triangulation& previous,
-                             std::span<const std::uint32_t> split) {
+                             std::span<const std::uint32_t> split)
+    : whole_(previous.whole_) {
     inherit_active(tree, previous, split);
     sign_ = previous.sign_;
     build_rest(tree, field, signs, &previous);
@@ -87,8 +88,13 @@ void Triangulation::inherit_active(const Octree& tree, const Triangulation& prev
 /// around an open leaf are those that hold a unit cube next to one of its corners, and those one of whose corners is on
 /// its surface. Both are found by collecting, for every leaf, the leaves around each of its corners.
 void Triangulation::choose_active(Octree& tree) {
-    is_active_.assign(tree.cells().size(), 0);
     const std::vector<std::uint32_t> leaves = tree.leaves();
+    is_active_.assign(tree.cells().size(), 0);
+    if (whole_) {
+        for (const std::uint32_t leaf : leaves) is_active_[leaf] = 1;
+        active_ = leaves;
+        return;
+    }
     const Coordinate side = tree.grid().side();
     for (const std::uint32_t leaf : leaves) {
         const Cell& cell = tree.cell(leaf);
@@ -181,7 +187,7 @@ void Triangulation::note_changes() {
 void Triangulation::choose_candidates(const Octree& tree) {
     may_join_.assign(point_count(), 0);
     for (std::size_t i = 0; i < active_.size(); ++i) {
-        if (tree.cell(active_[i]).known.sign != 0) continue;
+        if (tree.cell(active_[i]).known.sign != 0 && !whole_) continue;
         for (const Tetrahedron& t : tetrahedra_of(i)) {
             for (const std::uint32_t point : t)
                 may_join_[point] = tree.is_clipped() || !tree.on_boundary(tree.points()[point]) ? 1 : 0;

@@ -24,7 +24,8 @@ public:
         std::int8_t sign = 0;  ///< 0: not evaluated yet
         bool proved = false;
     };
-    Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs);
+    /// `whole`: all leaves are active, and every point of no critical leaf may join.
+    Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs, bool whole = false);
     /// The same after some leaves were split (once each, their children not), from what was built before: only leaves
     /// that got a new corner are built anew. Leaves that were active stay so, children of active leaves are.
     Triangulation(Octree& tree, Field& field, std::vector<PointSign>& signs, const Triangulation& previous,
@@ -69,6 +70,7 @@ private:
     std::vector<char> is_active_, may_join_;
     std::vector<char> is_new_;  ///< per active leaf: built anew
     std::vector<char> changed_;
+    bool whole_ = false;
     bool turned_ = false;  ///< a sign of a known point turned out to be the other
     std::vector<std::int8_t> sign_;
     std::vector<std::uint8_t> box_faces_;

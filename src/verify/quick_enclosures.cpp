@@ -11,6 +11,7 @@
 #include <cfenv>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
 
 namespace certa::verify {
 namespace {
@@ -42,6 +43,9 @@ Span square(const Span& a) {
     const Span wide = widened(std::min(p, q), std::max(p, q));
     return {a.low <= 0 && a.high >= 0 ? 0.0 : std::max(wide.low, 0.0), wide.high};
 }
+/// Second derivative k is by these two variables.
+constexpr std::array<std::pair<std::size_t, std::size_t>, 6> pair_of{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
+
 /// a^n for n >= 1, by squaring: powers of even exponents are squares, never negative.
 Span raised(const Span& a, long n) {
     if (n == 1) return a;
@@ -61,7 +65,7 @@ QuickEnclosures::QuickEnclosures(const ImplicitFunction& function)
         const bool read =
             step.kind == Kind::pi ? mpfi_const_pi(exact_) >= 0 : mpfi_set_str(exact_, step.text.c_str(), 10) == 0;
         values_[i].value = {mpfr_get_d(&exact_->left, MPFR_RNDD), mpfr_get_d(&exact_->right, MPFR_RNDU)};
-        values_[i].defined = values_[i].smooth = read && is_usable(values_[i].value);
+        values_[i].defined = values_[i].smooth = values_[i].curved = read && is_usable(values_[i].value);
     }
 }
 
@@ -71,7 +75,7 @@ Span QuickEnclosures::by_mpfi(int (*function)(mpfi_ptr, mpfi_srcptr), const Span
     return {mpfr_get_d(&exact_->left, MPFR_RNDD), mpfr_get_d(&exact_->right, MPFR_RNDU)};
 }
 
-void QuickEnclosures::evaluate(const std::array<Span, 3>& place, bool with_slopes) {
+void QuickEnclosures::evaluate(const std::array<Span, 3>& place, int order) {
     const auto& steps = function_.steps();
     for (std::size_t i = 0; i < steps.size(); ++i) {
         const ImplicitFunction::Step& step = steps[i];
@@ -83,146 +87,154 @@ void QuickEnclosures::evaluate(const std::array<Span, 3>& place, bool with_slope
             case Kind::variable:
                 r.value = place[static_cast<std::size_t>(step.n)];
                 r.slope[static_cast<std::size_t>(step.n)] = {1, 1};
-                r.defined = r.smooth = true;
+                r.defined = r.smooth = r.curved = true;
                 continue;
             case Kind::sum:
             case Kind::difference:
             case Kind::product:
             case Kind::quotient:
             case Kind::real_power:
-                binary(step, values_[step.a], values_[step.b], r, with_slopes);
+                binary(step, values_[step.a], values_[step.b], r, order);
                 break;
             default:
-                unary(step, values_[step.a], r, with_slopes);
+                unary(step, values_[step.a], r, order);
         }
         r.defined = r.defined && is_usable(r.value);
         r.smooth = r.smooth && r.defined;
+        r.curved = r.curved && r.smooth;
     }
 }
 
-/// Value and derivative of a function of one number; false where it is not defined. A derivative that is not defined is
-/// NaN.
-bool QuickEnclosures::outer(const ImplicitFunction::Step& step, const Span& a, Span& value, Span& slope) {
-    const Span one{1, 1};
+/// False where it is not defined. Derivatives that are not defined are NaN.
+bool QuickEnclosures::outer(const ImplicitFunction::Step& step, const Span& a, Outer& f) {
+    const Span one{1, 1}, two{2, 2};
     switch (step.kind) {
         case Kind::negative:
-            value = -a;
-            slope = {-1, -1};
+            f = {-a, {-1, -1}, {0, 0}};
             return true;
         case Kind::power: {
             if (std::labs(step.n) > 1'000'000) return false;  // left to MPFI
-            const long n = std::labs(step.n);
-            if (n == 0) {
-                value = one;
-                slope = {0, 0};
-                return true;
-            }
             if (step.n < 0 && sign_of(a) == 0) return false;
-            const auto count = static_cast<double>(step.n);
-            value = step.n < 0 ? one / raised(a, n) : raised(a, n);
-            slope = Span{count, count} * (step.n < 0 ? one / raised(a, n + 1) : n == 1 ? one : raised(a, n - 1));
+            const auto n = static_cast<double>(step.n);
+            const auto to = [&](long k) { return k == 0 ? one : k < 0 ? one / raised(a, -k) : raised(a, k); };
+            f.value = to(step.n);
+            f.slope = step.n == 0 ? Span{0, 0} : Span{n, n} * to(step.n - 1);
+            f.bend = step.n == 0 || step.n == 1 ? Span{0, 0} : Span{n * (n - 1), n * (n - 1)} * to(step.n - 2);
             return true;
         }
         case Kind::root: {
             if (!(a.low >= 0)) return false;
             const Span wide = widened(std::sqrt(a.low), std::sqrt(a.high));
-            value = {std::max(wide.low, 0.0), wide.high};
-            slope = value.low > 0 ? Span{0.5, 0.5} / value : Span{NAN, NAN};
+            f.value = {std::max(wide.low, 0.0), wide.high};
+            f.slope = Span{0.5, 0.5} / f.value;
+            f.bend = -(f.slope / (two * a));
             return true;
         }
         case Kind::exponential:
-            value = slope = by_mpfi(mpfi_exp, a);
+            f.value = f.slope = f.bend = by_mpfi(mpfi_exp, a);
             return true;
         case Kind::logarithm:
             if (sign_of(a) <= 0) return false;
-            value = by_mpfi(mpfi_log, a);
-            slope = one / a;
+            f = {by_mpfi(mpfi_log, a), one / a, -(one / square(a))};
             return true;
         case Kind::sine:
-            value = by_mpfi(mpfi_sin, a);
-            slope = by_mpfi(mpfi_cos, a);
+            f.value = by_mpfi(mpfi_sin, a);
+            f.slope = by_mpfi(mpfi_cos, a);
+            f.bend = -f.value;
             return true;
         case Kind::cosine:
-            value = by_mpfi(mpfi_cos, a);
-            slope = -by_mpfi(mpfi_sin, a);
+            f.value = by_mpfi(mpfi_cos, a);
+            f.slope = -by_mpfi(mpfi_sin, a);
+            f.bend = -f.value;
             return true;
         case Kind::tangent:
             if (sign_of(by_mpfi(mpfi_cos, a)) == 0) return false;
-            value = by_mpfi(mpfi_tan, a);
-            slope = one + square(value);
+            f.value = by_mpfi(mpfi_tan, a);
+            f.slope = one + square(f.value);
+            f.bend = two * f.value * f.slope;
             return true;
         case Kind::arctangent:
-            value = by_mpfi(mpfi_atan, a);
-            slope = one / (one + square(a));
+            f.value = by_mpfi(mpfi_atan, a);
+            f.slope = one / (one + square(a));
+            f.bend = -(two * a * square(f.slope));
             return true;
         case Kind::hyperbolic_sine:
-            value = by_mpfi(mpfi_sinh, a);
-            slope = by_mpfi(mpfi_cosh, a);
+            f.value = f.bend = by_mpfi(mpfi_sinh, a);
+            f.slope = by_mpfi(mpfi_cosh, a);
             return true;
         case Kind::hyperbolic_cosine:
-            value = by_mpfi(mpfi_cosh, a);
-            slope = by_mpfi(mpfi_sinh, a);
+            f.value = f.bend = by_mpfi(mpfi_cosh, a);
+            f.slope = by_mpfi(mpfi_sinh, a);
             return true;
         default:  // hyperbolic_tangent
-            value = by_mpfi(mpfi_tanh, a);
-            slope = one - square(value);
+            f.value = by_mpfi(mpfi_tanh, a);
+            f.slope = one - square(f.value);
+            f.bend = -(two * f.value * f.slope);
             return true;
     }
 }
 
-void QuickEnclosures::unary(const ImplicitFunction::Step& step, const Values& a, Values& r, bool with_slopes) {
-    Span slope;
-    r.defined = a.defined && outer(step, a.value, r.value, slope);
-    r.smooth = r.defined && a.smooth && is_usable(slope);
-    for (std::size_t i = 0; with_slopes && r.smooth && i < 3; ++i) {
-        if ((step.depends >> i) & 1u) r.slope[i] = slope * a.slope[i];
+void QuickEnclosures::unary(const ImplicitFunction::Step& step, const Values& a, Values& r, int order) {
+    Outer f;
+    r.defined = a.defined && outer(step, a.value, f);
+    if (!r.defined) return;
+    r.value = f.value;
+    r.smooth = a.smooth && is_usable(f.slope);
+    r.curved = r.smooth && a.curved && is_usable(f.bend);
+    chain(step, a, f, r, order);
+}
+
+/// Derivatives of f(a): f' a' and f'' a' a' + f' a''.
+void QuickEnclosures::chain(const ImplicitFunction::Step& step, const Values& a, const Outer& f, Values& r, int order) {
+    if (order < 1 || !r.smooth) return;
+    for (std::size_t i = 0; i < 3; ++i) {
+        if ((step.depends >> i) & 1u) r.slope[i] = f.slope * a.slope[i];
+    }
+    if (order < 2 || !r.curved) return;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto [i, j] = pair_of[k];
+        if (((step.depends >> i) & (step.depends >> j) & 1u) == 0) continue;
+        r.bend[k] = f.bend * (i == j ? square(a.slope[i]) : a.slope[i] * a.slope[j]) + f.slope * a.bend[k];
     }
 }
 
 void QuickEnclosures::binary(const ImplicitFunction::Step& step, const Values& a, const Values& b, Values& r,
-                             bool with_slopes) {
+                             int order) {
     r.defined = a.defined && b.defined;
-    r.smooth = a.smooth && b.smooth;
     if (!r.defined) return;
-    Span outer_slope;  // of a power
-    switch (step.kind) {
-        case Kind::sum:
-            r.value = a.value + b.value;
-            break;
-        case Kind::difference:
-            r.value = a.value - b.value;
-            break;
-        case Kind::product:
-            r.value = a.value * b.value;
-            break;
-        case Kind::quotient:
-            r.defined = sign_of(b.value) != 0;
-            if (r.defined) r.value = a.value / b.value;
-            break;
-        default:  // exp(b log a); roots are left to MPFI where a may be 0
-            r.defined = sign_of(a.value) > 0;
-            if (!r.defined) return;
-            r.value = by_mpfi(mpfi_exp, by_mpfi(mpfi_log, a.value) * b.value);
-            outer_slope = b.value * (r.value / a.value);
+    r.smooth = a.smooth && b.smooth;
+    r.curved = a.curved && b.curved;
+    if (step.kind == Kind::real_power) {  // exp(b log a); roots are left to MPFI where a may be 0
+        r.defined = sign_of(a.value) > 0;
+        if (!r.defined) return;
+        Outer f;
+        f.value = by_mpfi(mpfi_exp, by_mpfi(mpfi_log, a.value) * b.value);
+        f.slope = b.value * (f.value / a.value);
+        f.bend = (b.value - Span{1, 1}) * (f.slope / a.value);
+        r.value = f.value;
+        return chain(step, a, f, r, order);
     }
-    for (std::size_t i = 0; with_slopes && r.defined && r.smooth && i < 3; ++i) {
+    const bool quotient = step.kind == Kind::quotient;
+    r.defined = !quotient || sign_of(b.value) != 0;
+    if (!r.defined) return;
+    const auto linear = [&](const Span& of_a, const Span& of_b) {
+        return step.kind == Kind::sum ? of_a + of_b : of_a - of_b;
+    };
+    r.value = quotient ? a.value / b.value : step.kind == Kind::product ? a.value * b.value : linear(a.value, b.value);
+    const bool is_linear = step.kind == Kind::sum || step.kind == Kind::difference;
+    for (std::size_t i = 0; order >= 1 && r.smooth && i < 3; ++i) {
         if (((step.depends >> i) & 1u) == 0) continue;
-        switch (step.kind) {
-            case Kind::sum:
-                r.slope[i] = a.slope[i] + b.slope[i];
-                break;
-            case Kind::difference:
-                r.slope[i] = a.slope[i] - b.slope[i];
-                break;
-            case Kind::product:
-                r.slope[i] = a.slope[i] * b.value + a.value * b.slope[i];
-                break;
-            case Kind::quotient:
-                r.slope[i] = (a.slope[i] - r.value * b.slope[i]) / b.value;
-                break;
-            default:
-                r.slope[i] = outer_slope * a.slope[i];
-        }
+        r.slope[i] = is_linear  ? linear(a.slope[i], b.slope[i])
+                     : quotient ? (a.slope[i] - r.value * b.slope[i]) / b.value
+                                : a.slope[i] * b.value + a.value * b.slope[i];
+    }
+    for (std::size_t k = 0; order >= 2 && r.curved && k < 6; ++k) {
+        const auto [i, j] = pair_of[k];
+        if (((step.depends >> i) & (step.depends >> j) & 1u) == 0) continue;
+        r.bend[k] =
+            is_linear  ? linear(a.bend[k], b.bend[k])
+            : quotient ? (a.bend[k] - r.slope[i] * b.slope[j] - r.slope[j] * b.slope[i] - r.value * b.bend[k]) / b.value
+                       : a.bend[k] * b.value + a.value * b.bend[k] + a.slope[i] * b.slope[j] + a.slope[j] * b.slope[i];
     }
 }
 
@@ -233,23 +245,57 @@ QuickEnclosures::~QuickEnclosures() {
 
 bool QuickEnclosures::directly(const BoxOfDoubles& box, int axis, int sign) {
     std::array<Span, 3> place;
-    for (std::size_t i = 0; i < 3; ++i) place[i] = {box.low[i], box.high[i]};
-    evaluate(place, true);
+    std::array<double, 3> center;
+    for (std::size_t i = 0; i < 3; ++i) {
+        place[i] = {box.low[i], box.high[i]};
+        center[i] = box.low[i] / 2 + box.high[i] / 2;
+    }
+    evaluate(place, 1);
     const Values& whole = values_[function_.result()];
     if (!whole.defined) return false;
-    if (axis >= 0) return whole.smooth && sign_of(whole.slope[static_cast<std::size_t>(axis)]) == sign;
+    if (axis >= 0) {
+        if (!whole.smooth) return false;
+        if (sign_of(whole.slope[static_cast<std::size_t>(axis)]) == sign) return true;
+        return by_second_order(place, center, axis, sign);
+    }
     if (sign_of(whole.value) == sign) return true;
     if (!whole.smooth) return false;
     // f(c) + G(box) (box - c)
     Span sum;
-    for (std::size_t i = 0; i < 3; ++i) {
-        const double center = box.low[i] / 2 + box.high[i] / 2;
-        sum = sum + whole.slope[i] * (place[i] - Span{center, center});
-        place[i] = {center, center};
-    }
-    evaluate(place, false);
+    for (std::size_t i = 0; i < 3; ++i) sum = sum + whole.slope[i] * (place[i] - Span{center[i], center[i]});
+    evaluate({Span{center[0], center[0]}, Span{center[1], center[1]}, Span{center[2], center[2]}}, 0);
     const Values& middle = values_[function_.result()];
-    return middle.defined && sign_of(sum + middle.value) == sign;
+    if (!middle.defined) return false;
+    return sign_of(sum + middle.value) == sign || by_second_order(place, center, axis, sign);
+}
+
+/// With d = box - c: g_i(c) + H_i(box) d for a derivative, f(c) + g(c) d + d H(box) d / 2 for the value.
+bool QuickEnclosures::by_second_order(std::array<Span, 3> place, const std::array<double, 3>& center, int axis,
+                                      int sign) {
+    evaluate(place, 2);
+    const Values& whole = values_[function_.result()];
+    if (!whole.curved) return false;
+    std::array<Span, 3> d;
+    for (std::size_t i = 0; i < 3; ++i) {
+        d[i] = place[i] - Span{center[i], center[i]};
+        place[i] = {center[i], center[i]};
+    }
+    Span sum;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto [i, j] = pair_of[k];
+        if (axis < 0) {
+            sum = sum + whole.bend[k] * (i == j ? Span{0.5, 0.5} * square(d[i]) : d[i] * d[j]);
+        } else {
+            if (static_cast<int>(i) == axis) sum = sum + whole.bend[k] * d[j];
+            if (static_cast<int>(j) == axis && i != j) sum = sum + whole.bend[k] * d[i];
+        }
+    }
+    evaluate(place, 1);
+    const Values& middle = values_[function_.result()];
+    if (!middle.defined || !middle.smooth) return false;
+    if (axis >= 0) return sign_of(sum + middle.slope[static_cast<std::size_t>(axis)]) == sign;
+    for (std::size_t i = 0; i < 3; ++i) sum = sum + middle.slope[i] * d[i];
+    return sign_of(sum + middle.value) == sign;
 }
 
 /// Fewer levels than with MPFI, and the first part that fails ends it: what needs more digits costs little here.

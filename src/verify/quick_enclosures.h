@@ -26,7 +26,7 @@ public:
     /// As Enclosures::proves_sign (axis -1) and proves_slope. False where doubles do not suffice, or rounding is not to
     /// nearest.
     bool proves(const BoxOfDoubles& box, int axis, int sign) { return is_sound_ && on_parts(box, axis, sign, 0); }
-    /// Without parts: by the enclosure or the mean value form.
+    /// Without parts: by the enclosure, the mean value form or Taylor's with second derivatives.
     bool proves_directly(const BoxOfDoubles& box, int axis, int sign) { return is_sound_ && directly(box, axis, sign); }
 
 private:
@@ -34,12 +34,20 @@ private:
     struct Values {
         Span value;
         std::array<Span, 3> slope{};
-        bool defined = false, smooth = false;
+        std::array<Span, 6> bend{};                            ///< second derivatives xx, xy, xz, yy, yz, zz
+        bool defined = false, smooth = false, curved = false;  ///< curved: twice differentiable
     };
-    void evaluate(const std::array<Span, 3>& place, bool with_slopes);
-    void unary(const ImplicitFunction::Step& step, const Values& a, Values& r, bool with_slopes);
-    void binary(const ImplicitFunction::Step& step, const Values& a, const Values& b, Values& r, bool with_slopes);
-    bool outer(const ImplicitFunction::Step& step, const Span& a, Span& value, Span& slope);
+    /// A function of one number: value and two derivatives.
+    struct Outer {
+        Span value, slope, bend;
+    };
+    /// order 0: values; 1: with slopes; 2: with second derivatives.
+    void evaluate(const std::array<Span, 3>& place, int order);
+    void unary(const ImplicitFunction::Step& step, const Values& a, Values& r, int order);
+    void binary(const ImplicitFunction::Step& step, const Values& a, const Values& b, Values& r, int order);
+    static void chain(const ImplicitFunction::Step& step, const Values& a, const Outer& f, Values& r, int order);
+    bool outer(const ImplicitFunction::Step& step, const Span& a, Outer& f);
+    bool by_second_order(std::array<Span, 3> place, const std::array<double, 3>& center, int axis, int sign);
     Span by_mpfi(int (*function)(mpfi_ptr, mpfi_srcptr), const Span& a);
     bool on_parts(const BoxOfDoubles& box, int axis, int sign, int depth);
     bool directly(const BoxOfDoubles& box, int axis, int sign);

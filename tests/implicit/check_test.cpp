@@ -9,6 +9,7 @@
 #include "core/random.h"
 #include "expression/random_expression.h"
 #include "verify/implicit_function.h"
+#include "verify/quick_enclosures.h"
 
 namespace certa {
 namespace {
@@ -176,6 +177,63 @@ TEST(TwoReaders, Agree) {
           "sqrt(x)*exp(-y)+log(z)-tan(x/4)+atan(y)", "sinh(x)-cosh(y)+tanh(z)", "x^1.7-y^0.3"})
         compare(text);
     for (int i = 0; i < 100; ++i) compare(format_expression(test::random_expression(random, 8)));
+}
+
+// What is 0 everywhere has no sign, however it is rounded: neither as it stands nor as a derivative.
+TEST(QuickEnclosures, ClaimNoSignOfWhatIsZero) {
+    core::Random random(11);
+    for (const char* text :
+         {"(x+1)-1-x", "x/3-x*(1/3)", "sqrt(x*x+1)^2-x*x-1", "exp(log(x+9))-x-9", "(x+y)^2-x^2-2*x*y-y^2",
+          "sin(x)^2+cos(x)^2-1", "x^3*x^-2-x", "tan(x)-sin(x)/cos(x)", "x^1.5-x*sqrt(x)"}) {
+        const verify::ImplicitFunction function(text);
+        verify::QuickEnclosures quick(function);
+        for (int i = 0; i < 100; ++i) {
+            verify::BoxOfDoubles box{};
+            for (std::size_t a = 0; a < 3; ++a) {
+                box.low[a] = random.uniform(0.1, 1.5);
+                box.high[a] = box.low[a] + (i % 3 == 0 ? 0.0 : random.uniform(0, 1e-7));
+            }
+            for (int axis = -1; axis < 3; ++axis) {
+                EXPECT_FALSE(quick.proves_directly(box, axis, 1)) << text << " axis " << axis;
+                EXPECT_FALSE(quick.proves_directly(box, axis, -1)) << text << " axis " << axis;
+            }
+        }
+    }
+}
+
+// Signs of values and derivatives that are claimed of a box hold, by the derivatives of the library, at its points.
+TEST(QuickEnclosures, ClaimsHoldAtPoints) {
+    int claims = 0;
+    for (std::uint64_t seed = 1; seed <= 300; ++seed) {
+        core::Random random(seed);
+        const Expression f = test::random_expression(random, 3 + static_cast<int>(random.below(10)));
+        const verify::ImplicitFunction function(format_expression(f));
+        verify::QuickEnclosures quick(function);
+        const double size = random.coin(0.5) ? 0.3 : 0.02;
+        verify::BoxOfDoubles box{};
+        for (std::size_t a = 0; a < 3; ++a) {
+            box.low[a] = random.uniform(-1.5, 1.5);
+            box.high[a] = box.low[a] + size * random.uniform();
+        }
+        int claimed[4] = {};
+        for (int axis = -1; axis < 3; ++axis) {
+            for (const int sign : {1, -1}) {
+                if (quick.proves_directly(box, axis, sign)) claimed[axis + 1] = sign;
+            }
+            claims += claimed[axis + 1] != 0 ? 1 : 0;
+        }
+        for (int i = 0; i < 20; ++i) {
+            double p[3];
+            for (std::size_t a = 0; a < 3; ++a) p[a] = box.low[a] + (box.high[a] - box.low[a]) * random.uniform();
+            const PointValue at = evaluate(f, {p[0], p[1], p[2]});
+            const double values[4] = {at.value, at.gradient.x, at.gradient.y, at.gradient.z};
+            for (int k = 0; k < 4; ++k) {
+                if (claimed[k] == 0) continue;
+                EXPECT_GT(values[k] * claimed[k], -1e-9 * std::fabs(values[k]) - 1e-12) << format_expression(f);
+            }
+        }
+    }
+    EXPECT_GT(claims, 300);
 }
 
 }  // namespace

@@ -336,6 +336,23 @@ TEST(Engines, AgreeWhereASquareHasFourSignChanges) {
     EXPECT_EQ(topology.genera, std::vector<int>{0});
 }
 
+// The same certificate, with W by the thesis's watershed.
+TEST(Engines, TheWatershedCertifiesTheSame) {
+    struct Case {
+        const char* text;
+        std::vector<int> genera;
+    };
+    for (const Case& c : {Case{"x^2+y^2+z^2-1", {0}}, Case{torus, {1}}, Case{"(x^2+y^2+z^2-1)^2-0.25", {0, 0}},
+                          Case{"((x-1)^2+y^2+z^2)*((x+1)^2+y^2+z^2)-0.9", {0, 0}}}) {
+        const ImplicitResult result = mesh_implicit(parse_expression(c.text), {-2.03, -2.03, -2.03}, {1.97, 1.97, 1.97},
+                                                    {.certificate = true, .engine = ImplicitEngine::thesis});
+        ASSERT_STREQ(name_of(result.verdict), "certified") << c.text;
+        const ImplicitCheck check = check_implicit(result.mesh, c.text, result.certificate);
+        EXPECT_TRUE(check.ok() && check.isotopic) << c.text << (check.ok() ? "" : check.violations.front());
+        EXPECT_EQ(check.genera, c.genera) << c.text;
+    }
+}
+
 TEST(Engines, RefuseWhatTheyCannotDo) {
     const Expression f = parse_expression("x^2+y^2+z^2-1");
     const Point3 low{-2, -2, -2}, high{2, 2, 2};
@@ -343,6 +360,7 @@ TEST(Engines, RefuseWhatTheyCannotDo) {
     EXPECT_THROW(mesh_implicit(f, low, high, {.hausdorff = 0.1, .engine = ImplicitEngine::plantinga_vegter}),
                  InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.engine = ImplicitEngine::plantinga_vegter, .clip = true}), InputError);
+    EXPECT_THROW(mesh_implicit(f, low, high, {.engine = ImplicitEngine::thesis, .clip = true}), InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.error = 0.0}), InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.hausdorff = -1.0}), InputError);
     const ImplicitResult plane = mesh_implicit(parse_expression("x+2*y-z"), low, high,
