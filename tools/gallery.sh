@@ -31,10 +31,18 @@ entry() {
   printf '  %-32s %s\n' "$1" "$2"
 }
 
-# job FUNCTION NAME TITLE ...
+# job FUNCTION NAME TITLE ...: of models that could not be fetched there are no pages.
 job() {
   local before=$gallery_entries
   commands=
+  case $1 in
+    meshed | protected | curved | remeshed)
+      if ! input_of "$2" >/dev/null; then
+        printf '  %-32s left out: %s is not there\n' "$3" "$2"
+        return 0
+      fi
+      ;;
+  esac
   "$@" && return 0
   gallery_entries=$before
   gallery_failures=$((gallery_failures + 1))
@@ -52,7 +60,6 @@ input_of() {
   for input in "../models/$1".off "../models/$1".poly; do
     [ -e "$results/$input" ] && printf '%s' "$input" && return 0
   done
-  echo "$1 is not there" >>"$gallery_log"
   return 1
 }
 
