@@ -51,12 +51,17 @@ class Browser:
             pass_fds=theirs, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for fd in theirs:
             os.close(fd)
-        target = self.call("Target.createTarget", {"url": "about:blank"}, page=False)["targetId"]
-        self.session = None
-        self.session = self.call("Target.attachToTarget", {"targetId": target, "flatten": True}, page=False)["sessionId"]
-        for domain in ("Page", "Runtime", "Log"):
-            self.call(f"{domain}.enable")
-        self.resize(width, height, scale)
+        try:
+            target = self.call("Target.createTarget", {"url": "about:blank"}, page=False)["targetId"]
+            self.session = None
+            self.session = self.call("Target.attachToTarget", {"targetId": target, "flatten": True}, page=False)["sessionId"]
+            for domain in ("Page", "Runtime", "Log"):
+                self.call(f"{domain}.enable")
+            self.resize(width, height, scale)
+        except BaseException:
+            self.process.kill()
+            self.__exit__()
+            raise
 
     def __enter__(self):
         return self

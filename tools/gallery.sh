@@ -124,8 +124,8 @@ undecided() {
 chained() {
   local name=$1 title=$2 state=$3 function=$4
   shift 4
-  run implicit "$function" "$@" --error 0.01 -o "$name.off" --json "$name.json" &&
-    run remesh "$name.off" --error 0.4% --output triangles --lines "$name.lines.vtu" -o "$name.few.off" --json "$name.few.json" &&
+  run implicit "$function" "$@" --error 0.003 -o "$name.off" --json "$name.json" &&
+    run remesh "$name.off" --error 0.5% --output triangles --lines "$name.lines.vtu" -o "$name.few.off" --json "$name.few.json" &&
     run check "$name.few.off" --against "$name.off" &&
     run conform "$name.few.off" -o "$name.solid.vtu" --json "$name.solid.json" &&
     run check "$name.solid.vtu" --against "$name.few.off" &&
@@ -218,6 +218,6 @@ make_gallery() {
   job certified torus "torus, critical clusters" "file=2" "$torus"
   job undecided cone "cone: refused, with the place" "file=2" "x^2 + y^2 - z^2"
   section "The chain"
-  job chained chain "formula to tetrahedra" "file=4" "$tangle" --box -3 -3 -3 3 3 3
+  job chained chain "formula to tetrahedra" "file=4&clip=-y,0.8" "$tangle" --box -3 -3 -3 3 3 3
   write_gallery
 }
