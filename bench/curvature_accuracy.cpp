@@ -86,6 +86,7 @@ CurvatureOptions options_of(const std::string& method, double h) {
                           : parts[2] == "closed" ? Rim::closed
                           : parts[2] == "open"   ? Rim::open
                                                  : Rim::dual;
+        if (parts.size() > 2 && parts[2] == "kernel2") options.weight = Weight::kernel2;
         if (kind == "corrected") options.estimator = Estimator::corrected;
     } else if (kind == "jet") {
         options.estimator = Estimator::jet;

@@ -3,7 +3,7 @@
 //
 //   curvature_speed VERTICES RUNS [THREADS [CASE]]
 // A random torus (vertices in random order, as a reconstruction would give them) up to 2M vertices, a grid torus above.
-// CASE: only cases whose name contains it.
+// CASE: only cases whose name contains it; "peer": CGAL's jets, where the benchmarks were built with CGAL and Eigen.
 // The reference is one pass over the mesh's arrays that sums the areas of its triangles: what reading the mesh costs.
 #include <certa/curvature.h>
 #include <sys/resource.h>
@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "core/vector3.h"
+#include "curvature_peer.h"
 #include "mesh/generators_surfaces.h"
 
 using namespace certa;
@@ -99,6 +100,13 @@ int main(int argc, char** argv) {
         std::printf("%-20s %12.3f %12.3f %10.1f\n", c.name, 1e6 * median(build) / n, 1e6 * median(stage) / n,
                     median(stage) / median(reference));
     }
+    PeerRun peer;
+    std::vector<double> peer_times;
+    for (int run = 0; run < runs && (wanted.empty() || wanted == "peer") && n <= 2e6 && run_peer(mesh, peer); ++run)
+        peer_times.push_back(peer.seconds);
+    if (!peer_times.empty())
+        std::printf("%-20s %12s %12.3f %10.1f   (mean k_max %.4f)\n", peer.name.c_str(), "",
+                    1e6 * median(peer_times) / n, median(peer_times) / median(reference), peer.mean_k_max);
     rusage usage{};
     getrusage(RUSAGE_SELF, &usage);
     std::printf("peak memory %.2f GB\n", static_cast<double>(usage.ru_maxrss) / 1048576.0);

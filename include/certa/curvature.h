@@ -58,7 +58,8 @@ enum class Rim : std::uint8_t {
     closed,  ///< border edges and vertices count in full
     open,    ///< they do not count: the relative interior, as in Theorem 13
 };
-/// The function that takes the place of the indicator of a ball, t being distance / radius.
+/// The function that takes the place of the indicator of a ball, t being distance / radius, or of dual cells within
+/// `rings` steps (kernel2 only), t being steps / (rings + 1).
 enum class Weight : std::uint8_t {
     indicator,  ///< 1
     kernel2,    ///< (1 - t^2)^2, of order 2
@@ -76,7 +77,7 @@ struct CurvatureOptions {
     std::uint64_t rings = 2;            ///< of `rings`, in [1, 100]
     Rim rim = Rim::dual;                ///< of `rings`
     Length radius{0.0, false};          ///< of `ball` and `geodesic`, above 0
-    Weight weight = Weight::indicator;  ///< of balls
+    Weight weight = Weight::indicator;  ///< of balls, and of rings with rim dual
     bool all_sheets = false;            ///< balls: all of the surface inside, not only what connects to the vertex
     Estimator estimator = Estimator::normal_cycle;
     std::uint64_t jet_degree = 2;  ///< in [2, 4]

@@ -103,7 +103,9 @@ void RingWalker::start(Index vertex) {
 std::span<const Index> RingWalker::collect(Index vertex, std::uint64_t rings) {
     start(vertex);
     std::size_t begin = 0, found = found_;
+    ends_.clear();
     for (std::uint64_t ring = 0; ring < rings && begin < found; ++ring) {
+        ends_.push_back(found);
         for (const std::size_t end = found; begin < end; ++begin) {
             const std::span<const Index> neighbors = surface_.vertex_neighbors[list_[begin]];
             found_ = found;
@@ -149,6 +151,25 @@ Sums RingWalker::sum(Index vertex, std::uint64_t rings, Rim rim) {
     for (const Index v : collect(vertex, rings)) {
         add_record(sums, cells_.records[v]);
         add_remainder(sums, cells_.remainders[v]);
+    }
+    return sums;
+}
+
+Sums RingWalker::sum_tapered(Index vertex, std::uint64_t rings) {
+    Sums sums;
+    const std::span<const Index> cells = collect(vertex, rings);
+    ends_.push_back(cells.size());
+    std::size_t k = 0;
+    for (std::size_t step = 0; step < ends_.size(); ++step) {
+        const double t = static_cast<double>(step) / static_cast<double>(rings + 1), s = 1.0 - t * t, weight = s * s;
+        for (; k < ends_[step]; ++k) {
+            const CellRecord& record = cells_.records[cells[k]];
+            const CellRemainder& remainder = cells_.remainders[cells[k]];
+            add(sums.swapped, weight, record.swapped);
+            add(sums.plain, weight, remainder.plain);
+            sums.area += weight * record.area, sums.gaussian += weight * record.gaussian;
+            sums.edge_mass += weight * remainder.edge_mass, sums.vertex_mass += weight * remainder.vertex_mass;
+        }
     }
     return sums;
 }

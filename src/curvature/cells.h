@@ -75,6 +75,8 @@ public:
         : surface_(surface), cells_(cells), vertices_(surface.positions.size()), faces_(0) {}
 
     Sums sum(Index vertex, std::uint64_t rings, Rim rim);
+    /// Dual cells under the kernel (1 - t^2)^2, t = steps / (rings + 1).
+    Sums sum_tapered(Index vertex, std::uint64_t rings);
     /// The vertices within `rings` steps, nearest first, the vertex itself in front.
     std::span<const Index> collect(Index vertex, std::uint64_t rings);
     /// The vertices within the ball around the vertex that edges inside it connect to the vertex.
@@ -97,7 +99,8 @@ private:
     const Cells& cells_;
     Marks vertices_, faces_;
     std::vector<Index> list_, face_list_;
-    std::size_t found_ = 0;  ///< entries of list_ in use
+    std::vector<std::size_t> ends_;  ///< of the vertices within 0, 1, ... steps
+    std::size_t found_ = 0;          ///< entries of list_ in use
 };
 
 }  // namespace certa::curvature

@@ -26,9 +26,14 @@ void require_valid(const CurvatureOptions& options) {
     if (ball && !(options.radius.value > 0.0 && std::isfinite(options.radius.value)))
         refuse(defects, "radius must be above 0");
     if (options.jet_degree < 2 || options.jet_degree > 4) refuse(defects, "jet_degree must be in [2, 4]");
-    if (options.weight != Weight::indicator && options.neighborhood != Neighborhood::ball &&
-        options.neighborhood != Neighborhood::automatic_ball)
-        refuse(defects, "weight needs a ball");
+    if (options.weight != Weight::indicator && options.neighborhood == Neighborhood::geodesic)
+        refuse(defects, "weight needs a ball or rings");
+    if (options.weight != Weight::indicator && options.neighborhood == Neighborhood::rings) {
+        if (options.weight == Weight::kernel4) refuse(defects, "kernel4 needs a ball");
+        if (options.rim != Rim::dual) refuse(defects, "weight needs the rim dual");
+        if (options.estimator != Estimator::normal_cycle) refuse(defects, "weights over rings need normal_cycle");
+        if (options.bounds) refuse(defects, "bounds are on rings without weight");
+    }
     if (options.all_sheets && options.neighborhood != Neighborhood::ball)
         refuse(defects, "all_sheets needs a ball of given radius");
     if (options.max_curvature && !(*options.max_curvature > 0.0 && std::isfinite(*options.max_curvature)))
@@ -184,7 +189,7 @@ FactoryPointer choose_factory(const Surface& surface, const Cells& cells, const 
                                 options.neighborhood == Neighborhood::rings ? options.rings : 0, radius);
     switch (options.neighborhood) {
         case Neighborhood::rings:
-            return make_ring_factory(surface, cells, options.rings, options.rim);
+            return make_ring_factory(surface, cells, options.rings, options.rim, options.weight);
         case Neighborhood::ball:
             return make_ball_factory(surface, cells, radius, options.weight, options.all_sheets, control);
         case Neighborhood::automatic_ball:

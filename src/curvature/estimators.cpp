@@ -12,10 +12,11 @@ namespace {
 
 class RingEstimator : public VertexEstimator {
 public:
-    RingEstimator(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim)
-        : surface_(surface), walker_(surface, cells), rings_(rings), rim_(rim) {}
+    RingEstimator(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim, Weight weight)
+        : surface_(surface), walker_(surface, cells), rings_(rings), rim_(rim), weight_(weight) {}
     void estimate(Index vertex, VertexRow& row) override {
-        row.sums = walker_.sum(vertex, rings_, rim_);
+        row.sums =
+            weight_ == Weight::indicator ? walker_.sum(vertex, rings_, rim_) : walker_.sum_tapered(vertex, rings_);
         finish_normal_cycle(surface_, vertex, row);
     }
 
@@ -24,14 +25,15 @@ private:
     RingWalker walker_;
     std::uint64_t rings_;
     Rim rim_;
+    Weight weight_;
 };
 
 class RingFactory : public EstimatorFactory {
 public:
-    RingFactory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim)
-        : surface_(surface), cells_(cells), rings_(rings), rim_(rim) {}
+    RingFactory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim, Weight weight)
+        : surface_(surface), cells_(cells), rings_(rings), rim_(rim), weight_(weight) {}
     std::unique_ptr<VertexEstimator> make() const override {
-        return std::make_unique<RingEstimator>(surface_, cells_, rings_, rim_);
+        return std::make_unique<RingEstimator>(surface_, cells_, rings_, rim_, weight_);
     }
 
 private:
@@ -39,6 +41,7 @@ private:
     const Cells& cells_;
     std::uint64_t rings_;
     Rim rim_;
+    Weight weight_;
 };
 
 /// A walker, connected or over all sheets.
@@ -106,8 +109,9 @@ void finish_normal_cycle(const Surface& surface, Index vertex, VertexRow& row) {
     if (row.principal.normal == Point3{}) row.flags |= vertex_flags::undefined;
 }
 
-FactoryPointer make_ring_factory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim) {
-    return std::make_unique<RingFactory>(surface, cells, rings, rim);
+FactoryPointer make_ring_factory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim,
+                                 Weight weight) {
+    return std::make_unique<RingFactory>(surface, cells, rings, rim, weight);
 }
 
 FactoryPointer make_ball_factory(const Surface& surface, const Cells& cells, double radius, Weight weight,

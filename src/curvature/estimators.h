@@ -39,7 +39,8 @@ public:
 };
 
 using FactoryPointer = std::unique_ptr<EstimatorFactory>;
-FactoryPointer make_ring_factory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim);
+FactoryPointer make_ring_factory(const Surface& surface, const Cells& cells, std::uint64_t rings, Rim rim,
+                                 Weight weight);
 /// `radius` in the surface's units; `geodesic` and `automatic_ball` have factories of their own.
 FactoryPointer make_ball_factory(const Surface& surface, const Cells& cells, double radius, Weight weight,
                                  bool all_sheets, const RunControl& control);

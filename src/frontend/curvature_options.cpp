@@ -100,7 +100,7 @@ constexpr std::array curvature_table{
                                  [](const CurvatureOptions& o) { return static_cast<std::size_t>(o.weight); },
                                  [](CurvatureOptions& o, std::size_t i) { o.weight = static_cast<Weight>(i); }},
         {},
-        "of balls: plain, or a smooth kernel of order 2 or 4"},
+        "of balls: plain, or a smooth kernel of order 2 or 4; of rings: plain or order 2"},
     Option<CurvatureOptions>{"all_sheets",
                              "all-sheets",
                              &CurvatureOptions::all_sheets,

@@ -115,9 +115,38 @@ TEST(Vertex, TorusByRings) {
     const TorusErrors dual = torus_errors(mesh, compute_curvature(mesh, {.rings = 3}));
     EXPECT_LT(dual.value, 1.4);
     EXPECT_LT(dual.angle, 1.2);
+    // The same rings under a kernel of the number of steps: less noise, less bias.
+    const TorusErrors tapered = torus_errors(mesh, compute_curvature(mesh, {.rings = 3, .weight = Weight::kernel2}));
+    EXPECT_LT(tapered.value, 1.2);
+    EXPECT_LT(tapered.angle, 1.05);
     const TorusErrors literal = torus_errors(mesh, compute_curvature(mesh, {.rings = 3, .rim = Rim::open}));
     EXPECT_NEAR(literal.angle, 1.6, 0.2);   // the thesis's number
     EXPECT_NEAR(literal.bias, -13.9, 1.0);  // which the open rim scales by about 0.86
+}
+
+/// Steps 0, 1, 2 of two rings weigh 1, (1 - 1/9)^2 and (1 - 4/9)^2.
+TEST(Vertex, KernelsOverRings) {
+    core::Random random(3);
+    const TriangleMesh mesh = shaken(generators::make_icosphere(3), 0.02, false, random);
+    const auto with = [&](std::uint64_t rings, Weight weight) {
+        return compute_curvature(mesh, {.rings = rings, .weight = weight, .measures = true, .tensors = true});
+    };
+    std::vector<double> cells(mesh.positions.size());
+    for (const auto& [a, b, c] : mesh.triangles) {
+        const Point3& p = mesh.positions[index_of(a)];
+        const double area = 0.5 * norm(cross(mesh.positions[index_of(b)] - p, mesh.positions[index_of(c)] - p));
+        for (const VertexId v : {a, b, c}) cells[index_of(v)] += area / 3.0;
+    }
+    const CurvatureResult one = with(1, Weight::indicator), two = with(2, Weight::indicator);
+    const CurvatureResult smooth = with(2, Weight::kernel2);
+    const double near = std::pow(8.0 / 9.0, 2), far = std::pow(5.0 / 9.0, 2);
+    for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+        EXPECT_NEAR(smooth.area[v], cells[v] + near * (one.area[v] - cells[v]) + far * (two.area[v] - one.area[v]),
+                    1e-14);
+        EXPECT_NEAR(smooth.tensor[v].trace(), smooth.mean_measure[v], 1e-13);
+    }
+    EXPECT_THROW(compute_curvature(mesh, {.rim = Rim::half, .weight = Weight::kernel2}), InputError);
+    EXPECT_THROW(compute_curvature(mesh, {.weight = Weight::kernel4}), InputError);
 }
 
 /// Dropping the rim's edges scales curvatures by 1 - 1/(3 k) on regular meshes.
@@ -260,6 +289,32 @@ TEST(Vertex, OtherEstimatorsOnTheTorus) {
     for (const double gaussian : sphere.gaussian) EXPECT_NEAR(gaussian, 1.0, 0.05);
 }
 
+TEST(Vertex, CorrectedCurrentOverBalls) {
+    const TriangleMesh mesh = generators::make_torus(major, minor, 6000, 1);
+    const double h = compute_curvature(mesh).statistics.mean_edge_length;
+    CurvatureOptions options = ball_of(2.5 * h);
+    options.estimator = Estimator::corrected;
+    const TorusErrors plain = torus_errors(mesh, compute_curvature(mesh, options));
+    EXPECT_LT(plain.value, 4.5);
+    EXPECT_LT(plain.angle, 1.2);
+    // Noise is what it is for: a quarter of the spacing.
+    const double spacing = std::sqrt(compute_curvature(mesh).total.area / 6000);
+    const TriangleMesh noisy = generators::make_noisy(mesh, 0.25 * spacing, 9);
+    options.weight = Weight::kernel2, options.radius.value = 6 * h;
+    const TorusErrors smooth = torus_errors(mesh, compute_curvature(noisy, options));
+    EXPECT_LT(smooth.value, 4.0);
+    EXPECT_LT(smooth.angle, 1.0);
+    // A ball that holds everything sums everything.
+    const TriangleMesh sphere = generators::make_icosphere(2);
+    CurvatureOptions all = ball_of(3.0);
+    all.estimator = Estimator::corrected;
+    const CurvatureResult whole = compute_curvature(sphere, all);
+    for (const double gaussian : whole.gaussian) EXPECT_NEAR(gaussian, 1.0, 0.05);
+    for (const double area : whole.area) EXPECT_NEAR(area, whole.area[0], 1e-11);
+    all.weight = Weight::kernel4;
+    EXPECT_GT(compute_curvature(roof(0.3, 6), all).statistics.fallbacks, 0U);
+}
+
 TEST(Vertex, AutomaticEstimatorSaysWhatItChose) {
     const TriangleMesh clean = generators::make_torus(major, minor, 4000, 2);
     const CurvatureOptions options{.estimator = Estimator::automatic};
@@ -297,7 +352,9 @@ TEST(Vertex, OptionsOutOfRangeAreRefused) {
     EXPECT_THROW(compute_curvature(mesh, {.rings = 101}), InputError);
     EXPECT_THROW(compute_curvature(mesh, ball_of(0.0)), InputError);
     EXPECT_THROW(compute_curvature(mesh, ball_of(NAN)), InputError);
-    EXPECT_THROW(compute_curvature(mesh, {.weight = Weight::kernel2}), InputError);
+    CurvatureOptions geodesic{.neighborhood = Neighborhood::geodesic, .weight = Weight::kernel2};
+    geodesic.radius.value = 1.0;
+    EXPECT_THROW(compute_curvature(mesh, geodesic), InputError);
     EXPECT_THROW(compute_curvature(mesh, {.estimator = Estimator::jet, .jet_degree = 5}), InputError);
     EXPECT_THROW(compute_curvature(mesh, {.max_curvature = -1.0}), InputError);
 }
