@@ -91,8 +91,8 @@ int main(int count, char** arguments) {
                 if (options.clip || (engine == certa::ImplicitEngine::thesis && !watershed)) continue;
                 certa::ImplicitOptions other;
                 other.engine = engine;
-                other.max_cells = engine == certa::ImplicitEngine::thesis ? 300'000 : 1'000'000;
-                other.time_seconds = 30;
+                other.max_cells = engine == certa::ImplicitEngine::thesis ? 300'000 : 600'000;
+                other.time_seconds = 12;
                 const Row rival = run(surface, other);
                 print(rival, false);
                 agree = agree &&

@@ -7,6 +7,7 @@
 #include "implicit/subdivision.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <map>
 
@@ -28,6 +29,8 @@ public:
         max_cells_ = options.max_cells.value_or(std::uint64_t{1} << 31);
         const auto deepest = static_cast<std::uint64_t>(tree_.max_depth());
         max_depth_ = static_cast<int>(std::min(options.max_depth.value_or(deepest), deepest));
+        if (options.time_seconds && *options.time_seconds < 1'000'000'000)
+            deadline_ = std::chrono::steady_clock::now() + std::chrono::seconds(*options.time_seconds);
         result_.low = grid.place(GridPoint{0, 0, 0});
         result_.high = grid.place(GridPoint{grid.side(), grid.side(), grid.side()});
     }
@@ -85,7 +88,8 @@ private:
 
     bool split(const std::vector<std::uint32_t>& leaves, std::vector<std::uint32_t>& children) {
         if (control_.cancelled()) return stop(Reason::cancelled, {});
-        if (tree_.cells().size() + 8 * leaves.size() > max_cells_) return stop(Reason::budget, leaves);
+        if (tree_.cells().size() + 8 * leaves.size() > max_cells_ || std::chrono::steady_clock::now() > deadline_)
+            return stop(Reason::budget, leaves);
         for (const std::uint32_t leaf : leaves) {
             const Cell& cell = tree_.cell(leaf);
             if (cell.depth < max_depth_) continue;
@@ -120,22 +124,50 @@ private:
     // ---- The interpolation ------------------------------------------------------------------------------------------
 
     /// Splits leaves until on each one without a sign the gradients of f and of the interpolation vary little together.
+    /// Only what a split may have changed is looked at again: children, and leaves at least as large next to them.
     bool tame_interpolation() {
-        for (std::vector<std::uint32_t> children;;) {
-            const std::vector<std::uint32_t> open = open_leaves();
+        std::vector<std::uint32_t> open = open_leaves(), children;
+        for (;;) {
             if (!settle_points(open)) return false;
             std::vector<char> tame(open.size(), 0);
             core::parallel_for(open.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
                 for (std::size_t i = begin; i < end; ++i) tame[i] = is_tame(open[i]) ? 1 : 0;
             });
-            std::vector<std::uint32_t> wild;
+            std::vector<std::uint32_t> wild, changed;
             for (std::size_t i = 0; i < open.size(); ++i) {
-                if (!tame[i]) wild.push_back(open[i]);
+                if (tame[i]) continue;
+                wild.push_back(open[i]);
+                tree_.visit_around_corners(tree_.cell(open[i]), [&](std::uint32_t leaf) { changed.push_back(leaf); });
             }
-            if (wild.empty()) return true;
+            if (wild.empty()) {
+                // In the end, all at once: then the theorem holds whatever was looked at before.
+                std::vector<std::uint32_t> all = open_leaves();
+                if (open.size() == all.size()) return true;
+                open = std::move(all);
+                continue;
+            }
             ++result_.statistics.rounds;
             if (!split(wild, children)) return false;
+            changed.insert(changed.end(), children.begin(), children.end());
+            std::sort(changed.begin(), changed.end());
+            changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+            std::erase_if(changed, [&](std::uint32_t leaf) {
+                return !tree_.cell(leaf).is_leaf() || tree_.cell(leaf).known.sign != 0;
+            });
+            open = resettle_doubtful() ? open_leaves() : std::move(changed);
         }
+    }
+
+    /// Signs of points that are not proved may be those of new leaves: whether some value changed.
+    bool resettle_doubtful() {
+        bool turned = false;
+        for (std::uint32_t p = 0; p < values_.size(); ++p) {
+            if (values_[p].proved || values_[p].value == 0) continue;
+            const double before = values_[p].value;
+            settle(p, field_);
+            turned = turned || values_[p].value != before;
+        }
+        return turned;
     }
 
     std::vector<std::uint32_t> open_leaves() const {
@@ -185,7 +217,7 @@ private:
         core::parallel_for(used.size(), 256, control_, [&](std::size_t begin, std::size_t end) {
             Field field(tape_);
             for (std::size_t p = begin; p < end; ++p) {
-                if (used[p] && !values_[p].proved) settle(static_cast<std::uint32_t>(p), field);
+                if (used[p] && values_[p].value == 0) settle(static_cast<std::uint32_t>(p), field);
             }
         });
         return !control_.cancelled() || stop(Reason::cancelled, {});
@@ -294,8 +326,9 @@ private:
     const RunControl& control_;
     std::uint64_t max_cells_ = 0;
     int max_depth_ = 0;
+    std::chrono::steady_clock::time_point deadline_ = std::chrono::steady_clock::time_point::max();
     struct PointValue {
-        double value = 0;  ///< of the interpolation, not 0
+        double value = 0;  ///< of the interpolation; 0: none yet
         bool proved = false;
     };
     std::vector<PointValue> values_;               ///< per point
