@@ -133,7 +133,7 @@ class Curvature(unittest.TestCase):
 
     def test_usage(self):
         for wrong in (["--ball", "0"], ["--ball", "x"], ["--rings", "0"], ["--rings", "101"], ["--rim", "none"],
-                      ["--weight", "kernel2"], ["--ball", "1", "--rings", "2"], ["--ball", "1", "--geodesic", "1"],
+                      ["--weight", "kernel4"], ["--geodesic", "1", "--weight", "kernel2"], ["--ball", "1", "--rings", "2"], ["--ball", "1", "--geodesic", "1"],
                       ["--estimator", "auto", "--ball", "1"], ["--jet-degree", "5"], ["--max-curvature", "-1"],
                       ["--region", "ball:0,0,0"], ["--region", "ball:0,0:1"], ["--region", "sphere:0,0,0:1"],
                       ["--region", "ball:0,0,0:1 &"], ["--region", "(ball:0,0,0:1"], ["--region", "ball:0,0,0:-1"],
