@@ -117,6 +117,8 @@ Json json_of(const RemeshStatistics& s) {
                  {"spacing_error", s.spacing_error},
                  {"smoothing", s.smoothing},
                  {"rounds", s.rounds},
+                 {"mended_regions", s.mended_regions},
+                 {"mended_triangles", s.mended_triangles},
                  {"distance_bound", s.distance_bound},
                  {"vertices", s.vertices},
                  {"faces", s.faces},
@@ -140,6 +142,9 @@ void say_result(Session& session, const RemeshStatistics& s) {
     const double share = s.faces > 0 ? 100.0 * static_cast<double>(s.quads) / static_cast<double>(s.faces) : 0.0;
     session.say("result       " + counted(s.vertices, "vertex", "vertices") + ", " + counted(s.faces, "face") + ", " +
                 counted(s.quads, "quad") + " (" + std::to_string(static_cast<int>(share)) + " %)");
+    if (s.mended_regions > 0)
+        session.say("mended       " + counted(s.mended_regions, "region") + " by " +
+                    counted(s.mended_triangles, "triangle") + " of the input, where polygons would turn away or meet");
     if (s.distance_bound > 0.0) session.say("distance     at most " + text_of(s.distance_bound) + ", proved");
     for (const std::string& note : s.notes) session.warn(note);
 }

@@ -61,6 +61,8 @@ struct RemeshStatistics {
     double spacing_error = 0.0;   ///< epsilon of the spacing of lines, as resolved
     double smoothing = 0.0;       ///< smoothing length, as resolved
     std::size_t rounds = 0;       ///< networks that were traced to meet what was asked for
+    /// Where polygons would turn away, meet or be too far, triangles of the input stand: regions of these, and triangles.
+    std::size_t mended_regions = 0, mended_triangles = 0;
     double distance_bound = 0.0;  ///< where an error was asked for: proved, both ways, in the input's unit
     std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0;
     std::size_t t_nodes = 0;            ///< polygons' corners without a turn, before they became quads and triangles

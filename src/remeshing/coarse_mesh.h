@@ -42,6 +42,7 @@ struct CoarseMesh {
     std::vector<Index> corners;
     std::vector<Index> offsets{0};
     std::vector<FeatureEdge> feature_edges;  ///< sides of polygons that cover the feature curves of the input
+    std::vector<Index> parents;              ///< per polygon: the face of the graph that it is a piece of; or empty
 
     std::size_t polygon_count() const { return offsets.size() - 1; }
     std::span<const Index> polygon(std::size_t i) const {
@@ -55,9 +56,17 @@ struct CoarseMesh {
         places.push_back(place);
         return static_cast<Index>(points.size() - 1);
     }
-    void add_polygon(std::span<const Index> ring) {
+    void add_polygon(std::span<const Index> ring, Index parent = no_index) {
         corners.insert(corners.end(), ring.begin(), ring.end());
         offsets.push_back(static_cast<Index>(corners.size()));
+        parents.push_back(parent);
+    }
+    Index parent(std::size_t i) const { return i < parents.size() ? parents[i] : no_index; }
+    /// A copy without polygons.
+    CoarseMesh without_polygons() const {
+        CoarseMesh copy = *this;
+        copy.corners.clear(), copy.offsets.assign(1, 0), copy.parents.clear();
+        return copy;
     }
 };
 

@@ -52,7 +52,7 @@ std::vector<Index> count_at_vertices(const WorkMesh& mesh, const std::vector<Mar
 }
 
 /// Groups of creases by angle that nothing else holds up and that are short.
-void forget_noise(const WorkMesh& mesh, std::vector<Mark>& marks) {
+void forget_noise(const WorkMesh& mesh, std::vector<Mark>& marks, double least) {
     core::UnionFind sets(mesh.points.size());
     for (std::size_t e = 0; e < marks.size(); ++e) {
         const Index h = mesh.edge_halfedges[e];
@@ -66,7 +66,6 @@ void forget_noise(const WorkMesh& mesh, std::vector<Mark>& marks) {
         length[group] += mesh.lengths[e];
         if (marks[e] != Mark::angle) held[group] = true;
     }
-    const double least = 0.12 * mesh.diagonal;
     for (std::size_t e = 0; e < marks.size(); ++e) {
         if (marks[e] != Mark::angle) continue;
         const Index group = sets.find(mesh.start_of(mesh.edge_halfedges[e]));
@@ -124,6 +123,7 @@ public:
         for (Index v = 0; v < degree.size(); ++v) mesh_.is_corner[v] = is_corner(v, degree[v]);
     }
 
+    const std::vector<bool>& corners() const { return mesh_.is_corner; }
     void build() {
         mesh_.edge_curves.assign(marks_.size(), no_index);
         for (Index v = 0; v < mesh_.points.size(); ++v)
@@ -179,9 +179,17 @@ private:
 
 void find_features(WorkMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
     std::vector<Mark> marks = mark_edges(mesh, options);
+    // What nobody would miss; then what no curve should follow.
+    forget_noise(mesh, marks, std::min(0.03 * mesh.diagonal, 12.0 * mesh.mean_edge));
+    const std::vector<Mark> all = marks;
+    const std::vector<bool> all_corners = CurveBuilder(mesh, all).corners();
     forget_whiskers(mesh, marks);
-    forget_noise(mesh, marks);
+    forget_noise(mesh, marks, 0.12 * mesh.diagonal);
     CurveBuilder(mesh, marks).build();
+    for (Index e = 0; e < marks.size(); ++e)
+        if (all[e] != marks[e]) mesh.minor_edges.push_back(e);
+    for (Index v = 0; v < mesh.points.size(); ++v)
+        if (all_corners[v] && !mesh.is_corner[v]) mesh.minor_corners.push_back(v);
     statistics.feature_curves = mesh.curves.size();
     statistics.feature_edges =
         static_cast<std::size_t>(std::count_if(marks.begin(), marks.end(), [](Mark m) { return m != Mark::none; }));

@@ -51,6 +51,14 @@ Point3 unit(const Point3& v) {
     return length > 0.0 ? (1.0 / length) * v : Point3{};
 }
 
+/// x^p; fast where p is an even whole number.
+double raise(double x, double p) {
+    if (p == 2.0) return x * x;
+    if (p == 4.0) return (x * x) * (x * x);
+    if (p == 6.0) return (x * x) * (x * x) * (x * x);
+    return std::pow(x, p);
+}
+
 class Placement {
 public:
     Placement(const TriangleMesh& input, std::span<const FeatureEdge> features, CoarseMesh& mesh,
@@ -256,7 +264,7 @@ private:
         for (const Pair& pair : pairs_) largest = std::max(largest, pair.weight > 0.0 ? pair.distance : 0.0);
         if (largest == 0.0) return 0.0;
         for (const Pair& pair : pairs_) {
-            sum += pair.weight * std::pow(pair.distance / largest, power);
+            sum += pair.weight * raise(pair.distance / largest, power);
             weights += pair.weight;
         }
         return largest * std::pow(sum / weights, 1.0 / power);
@@ -357,7 +365,7 @@ private:
         for (const Pair& pair : pairs_) {
             if (pair.weight == 0.0) continue;
             double weight = pair.weight;
-            if (power > 2.0) weight *= 0.02 + std::pow(pair.distance / largest, power - 2.0);
+            if (power > 2.0) weight *= 0.02 + raise(pair.distance / largest, power - 2.0);
             const auto& c = triangles_[pair.triangle];
             auto& block = blocks_[pair.triangle];
             std::size_t slot = 0;

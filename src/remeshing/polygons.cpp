@@ -30,21 +30,26 @@ std::vector<std::int64_t> characteristics(const WorkMesh& mesh) {
 
 /// The patch to the left of a half-edge of the graph.
 Index patch_of(const Graph& graph, const Network& network, Index h) {
+    const Index face = triangle_beside(graph, network, h);
+    return face == no_index ? no_index : network.mesh().patches[face];
+}
+
+}  // namespace
+
+Index triangle_beside(const Graph& graph, const Network& network, Index h) {
     const WorkMesh& mesh = network.mesh();
     const GraphEdge& e = graph.edges[h / 2];
     if (e.line != no_index) {
         const auto& faces = network.lines()[e.line].faces;
-        return mesh.patches[faces[static_cast<std::size_t>(e.from) % faces.size()]];
+        return faces[static_cast<std::size_t>(e.from) % faces.size()];
     }
     const FeatureCurve& curve = mesh.curves[e.curve];
     const std::size_t k = static_cast<std::size_t>(e.from) % curve.edges.size();
     const Index first = mesh.edge_halfedges[curve.edges[k]];
     const bool along = (mesh.start_of(first) == curve.vertices[k]) == (h % 2 == 0);
     const Index side = along ? first : mesh.opposites[first];
-    return side == no_index ? no_index : mesh.patches[side / 3];
+    return side == no_index ? no_index : side / 3;
 }
-
-}  // namespace
 
 Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<std::vector<Index>>& faces) {
     const WorkMesh& mesh = network.mesh();
@@ -102,7 +107,7 @@ CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index
         ++counts.polygons;
         counts.quads_with_t += ring.size() == 4 ? 1 : 0;
         counts.quads_without_t += corners == 4 ? 1 : 0;
-        coarse.add_polygon(ring);
+        coarse.add_polygon(ring, static_cast<Index>(f));
     }
     for (const GraphEdge& e : graph.edges)
         if (e.alive() && e.curve != no_index) coarse.feature_edges.push_back({numbers[e.a], numbers[e.b], e.curve});

@@ -14,6 +14,9 @@ struct Flaws {
 /// when each face has one rim and no handle; and no face may pass a node twice.
 Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<std::vector<Index>>& faces);
 
+/// The triangle of the work mesh to the left of a half-edge's beginning; no_index outside the boundary.
+Index triangle_beside(const Graph& graph, const Network& network, Index halfedge);
+
 struct PolygonCounts {
     std::size_t t_nodes = 0, polygons = 0, quads_with_t = 0, quads_without_t = 0;
 };

@@ -12,6 +12,7 @@
 
 #include "core/assert.h"
 #include "core/triangle_tree.h"
+#include "remeshing/mend.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
 #include "remeshing/subdivision.h"
@@ -63,6 +64,8 @@ struct Draft {
     double error = 0.0;
     Network network;
     Graph graph;
+    std::vector<std::vector<Index>> faces;
+    std::vector<Index> nodes;  ///< of the graph, per vertex of the polygons
     CoarseMesh polygons;
     PolygonCounts counts;
     std::vector<Point3> flaws;  ///< places that no refinement has mended
@@ -77,6 +80,7 @@ public:
           mesh_(build_work_mesh(mesh, options, result_.statistics)) {
         input_.positions = mesh_.points;
         for (const auto& f : mesh_.faces) input_.triangles.push_back({VertexId{f[0]}, VertexId{f[1]}, VertexId{f[2]}});
+        tree_.emplace(input_.positions, input_.triangles);
         watch_.stage("input");
     }
 
@@ -94,10 +98,15 @@ private:
     void search();
     void meet_error();
     double refine_where_far(double error, double limit);
+    double far_share(double limit) const;
     double wanted_error() const {
         return options_.error ? options_.error->resolve(mesh_.diagonal) : 2e-3 * mesh_.diagonal;
     }
-    void finish();
+    bool finish();
+    CoarseMesh mended(CoarseMesh mesh, double error);
+    void judge_input(CoarseMesh& mesh, Judge& judge);
+    void give_input(double tolerance);
+    void finish_count();
     void emit(const CoarseMesh& coarse);
     void place(CoarseMesh& mesh);
     CoarseMesh cut(const CoarseMesh& polygons);
@@ -111,6 +120,8 @@ private:
     Stopwatch watch_;
     WorkMesh mesh_;
     TriangleMesh input_;  ///< the work mesh
+    std::optional<core::TriangleTree> tree_;
+    std::optional<bool> is_embedded_;  ///< the input, once it has been asked
     DirectionField field_;
     std::vector<double> caps_;        ///< per wedge: largest spacing, 0 where free
     std::vector<double> patch_caps_;  ///< per patch, of the last refinement
@@ -208,9 +219,7 @@ std::vector<Index> Remesher::crowded_vertices(const CoarseMesh& mesh) const {
 
 /// Polygons in which two vertices of a crowded edge are not neighbours become triangles around a new vertex.
 CoarseMesh Remesher::fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const {
-    CoarseMesh out = mesh;
-    out.corners.clear();
-    out.offsets.assign(1, 0);
+    CoarseMesh out = mesh.without_polygons();
     for (std::size_t i = 0; i < mesh.polygon_count(); ++i) {
         const auto ring = mesh.polygon(i);
         const std::size_t n = ring.size();
@@ -223,13 +232,14 @@ CoarseMesh Remesher::fan_out(const CoarseMesh& mesh, const std::vector<Index>& c
             fan = gap != 1 && gap + 1 != n;
         }
         if (!fan) {
-            out.add_polygon(ring);
+            out.add_polygon(ring, mesh.parent(i));
             continue;
         }
         Point3 middle;
         for (const Index v : ring) middle = middle + (1.0 / static_cast<double>(n)) * mesh.points[v];
         const Index center = out.add_vertex(middle, mesh.places[ring[0]]);
-        for (std::size_t k = 0; k < n; ++k) out.add_polygon(std::array{ring[k], ring[(k + 1) % n], center});
+        for (std::size_t k = 0; k < n; ++k)
+            out.add_polygon(std::array{ring[k], ring[(k + 1) % n], center}, mesh.parent(i));
     }
     return out;
 }
@@ -239,16 +249,16 @@ Draft Remesher::draft(double error) {
     for (int round = 0;; ++round) {
         const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
         watch_.stage("spacing");
-        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}};
+        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}};
         watch_.stage("lines");
         ++result_.statistics.rounds;
         d.graph = build_graph(d.network, {0.5 * error});
         simplify_graph(d.graph, d.network);
-        const auto faces = d.graph.trace_faces(mesh_);
-        Flaws flaws = find_flaws(d.graph, d.network, faces);
+        d.faces = d.graph.trace_faces(mesh_);
+        Flaws flaws = find_flaws(d.graph, d.network, d.faces);
         if (flaws.empty()) {
-            std::vector<Index> nodes;
-            d.polygons = make_polygons(d.graph, faces, d.counts, nodes);
+            std::vector<Index>& nodes = d.nodes;
+            d.polygons = make_polygons(d.graph, d.faces, d.counts, nodes);
             // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
             for (int fans = 0; fans < 4; ++fans) {
                 const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
@@ -322,7 +332,7 @@ double Remesher::refine_where_far(double error, double limit) {
         const double cap = 0.45 * std::min(spacing.at[0][w], spacing.at[1][w]);
         if (caps_[w] == 0.0 || cap < caps_[w]) caps_[w] = cap;
     };
-    const core::TriangleTree input(input_.positions, input_.triangles);
+    const core::TriangleTree& input = *tree_;
     const CoarseMesh triangles = make_triangles(placed_, input);
     std::vector<Triangle> ids;
     for (std::size_t i = 0; i < triangles.polygon_count(); ++i) {
@@ -346,6 +356,24 @@ double Remesher::refine_where_far(double error, double limit) {
     return static_cast<double>(far) / static_cast<double>(mesh_.wedge_count());
 }
 
+/// The share of the placed triangles that are farther from the input than `limit`, and vertices of the input likewise.
+double Remesher::far_share(double limit) const {
+    const CoarseMesh triangles = make_triangles(placed_, *tree_);
+    std::vector<Triangle> ids;
+    std::size_t far = 0, looked = 0;
+    for (std::size_t i = 0; i < triangles.polygon_count(); ++i, ++looked) {
+        const auto t = triangles.polygon(i);
+        ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+        const Point3 middle = (1.0 / 3.0) * (triangles.points[t[0]] + triangles.points[t[1]] + triangles.points[t[2]]);
+        far += tree_->find_nearest(middle).squared_distance > limit * limit ? 1 : 0;
+    }
+    const core::TriangleTree result(triangles.points, ids);
+    std::size_t far_below = 0;
+    for (const Point3& p : mesh_.points) far_below += result.find_nearest(p).squared_distance > limit * limit ? 1 : 0;
+    return std::max(static_cast<double>(far) / static_cast<double>(looked),
+                    static_cast<double>(far_below) / static_cast<double>(mesh_.points.size()));
+}
+
 /// Lines closer together until the result's distance to the input, proved for every way to fill its polygons, is within
 /// the bound.
 void Remesher::meet_error() {
@@ -357,27 +385,30 @@ void Remesher::meet_error() {
         input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
     }
     const double wanted = wanted_error();
-    for (int round = 0; round < 10; ++round) {
+    constexpr int most_rounds = 5;
+    for (int round = 0; round < most_rounds; ++round) {
         best_.emplace(draft(error));
         if (control_.cancelled()) return;
-        finish();
-        if (result_.outcome != Outcome::done) return;
+        if (!finish()) break;
         DistanceOptions options;
         options.samples = 10000;
         options.tolerance = 0.05;
         options.resolution = Length{0.02 * wanted, false};
         // Samples first: they tell cheaply that it is not good enough.
         options.bound = false;
+        emit(placed_);
         SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
         double reached = distance.hausdorff;
-        if (reached <= wanted) {
+        const double share = reached <= wanted ? 0.0 : far_share(wanted);
+        // A few places that are too far are mended; more of them want closer lines.
+        if (share < (round < 2 ? 0.0 : 0.03) || reached <= wanted || round + 1 == most_rounds) {
             // Warped quads are what a bound for all ways to fill them fails on: cut more and more of them.
             options.bound = true;
             const bool may_cut = options_.output == RemeshOutput::quad_dominant && options_.subdivide == 0;
             for (const double limit : {0.75, 0.3, 0.1, 0.0}) {
                 if (control_.cancelled()) return;
-                if (limit < (round < 3 ? 0.75 : round < 5 ? 0.3 : 0.0)) break;  // more lines first: they keep quads
-                if (may_cut) emit(cut_warped(placed_, limit * wanted));
+                if (limit < (round < 2 ? 0.75 : round < 3 ? 0.3 : 0.0)) break;  // more lines first: they keep quads
+                emit(mended(may_cut ? cut_warped(placed_, limit * wanted) : placed_, wanted));
                 distance = measure_distance(result_.mesh, input, options, control_);
                 reached = distance.hausdorff_bound;
                 result_.statistics.distance_bound = reached;
@@ -391,8 +422,18 @@ void Remesher::meet_error() {
         watch_.stage("certificate");
         if (control_.cancelled()) return;
         // Far in a few places: lines closer together there; far nearly everywhere: a smaller epsilon.
-        const double share = refine_where_far(error, 0.75 * std::min(wanted, reached));
-        if (share > 0.1 || share == 0.0) error *= std::clamp(0.85 * wanted / reached, 0.25, 0.7);
+        const double far = refine_where_far(error, 0.75 * std::min(wanted, reached));
+        if (far > 0.1 || far == 0.0) error *= std::clamp(0.85 * wanted / reached, 0.25, 0.7);
+    }
+    // Nothing else has helped: triangles of the input, as few as the error allows.
+    for (const double part : {0.5, 0.2, 1e-4}) {
+        if (control_.cancelled()) return;
+        give_input(part * wanted);
+        DistanceOptions options;
+        options.samples = 10000;
+        const SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
+        result_.statistics.distance_bound = distance.hausdorff_bound;
+        if (distance.hausdorff_bound <= wanted) return;
     }
     result_.outcome = Outcome::over_budget;
     result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
@@ -439,7 +480,7 @@ CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
         case RemeshOutput::quad_dominant:
             return make_quad_dominant(polygons);
         case RemeshOutput::triangles:
-            return make_triangles(polygons, core::TriangleTree(input_.positions, input_.triangles));
+            return make_triangles(polygons, *tree_);
     }
     return polygons;
 }
@@ -447,10 +488,8 @@ CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
 /// Quads whose diagonals are farther apart than `limit`, or that are not convex, become triangles on the diagonal
 /// nearer to the input: what an error is proved for must not depend on how a reader fills a quad.
 CoarseMesh Remesher::cut_warped(const CoarseMesh& mesh, double limit) const {
-    const CoarseMesh triangles = make_triangles(mesh, core::TriangleTree(input_.positions, input_.triangles));
-    CoarseMesh out = mesh;
-    out.corners.clear();
-    out.offsets.assign(1, 0);
+    const CoarseMesh triangles = make_triangles(mesh, *tree_);
+    CoarseMesh out = mesh.without_polygons();
     for (std::size_t i = 0, t = 0; i < mesh.polygon_count(); ++i) {
         const auto ring = mesh.polygon(i);
         const std::size_t end = t + ring.size() - 2;
@@ -464,9 +503,9 @@ CoarseMesh Remesher::cut_warped(const CoarseMesh& mesh, double limit) const {
                      dot(cross(d - c, b - c), n) <= 0.0 || dot(cross(a - d, c - d), n) <= 0.0;
         }
         if (warped)
-            for (std::size_t k = t; k < end; ++k) out.add_polygon(triangles.polygon(k));
+            for (std::size_t k = t; k < end; ++k) out.add_polygon(triangles.polygon(k), mesh.parent(i));
         else
-            out.add_polygon(ring);
+            out.add_polygon(ring, mesh.parent(i));
         t = end;
     }
     return crowded_vertices(out).empty() ? out : mesh;
@@ -481,21 +520,10 @@ void Remesher::describe_polygons() {
     s.quad_share_without_t = static_cast<double>(best_->counts.quads_without_t) / polygons;
 }
 
-void Remesher::finish() {
-    result_.mesh = {};
-    result_.feature_edges.clear();
-    result_.feature_curves.clear();
+/// Cuts and places the polygons. False: there are none, because no network has only disks for faces.
+bool Remesher::finish() {
     describe_polygons();
-    if (!best_->flaws.empty()) {
-        // Nothing half right: an answer would have the wrong topology.
-        const Point3& p = best_->flaws.front();
-        result_.outcome = Outcome::undecided;
-        result_.statistics.notes.push_back(
-            "no network of lines was found whose faces are simple polygons everywhere, first near (" +
-            std::to_string(p.x) + ", " + std::to_string(p.y) + ", " + std::to_string(p.z) +
-            "); a smaller error or more vertices may do it");
-        return;
-    }
+    if (!best_->flaws.empty()) return false;
     CoarseMesh coarse = cut(best_->polygons);
     watch_.stage("outputs");
     if (options_.output == RemeshOutput::polygons && options_.placement) {
@@ -507,9 +535,60 @@ void Remesher::finish() {
     } else {
         place(coarse);
     }
-    for (std::uint64_t round = 0; round < options_.subdivide; ++round) coarse = subdivide(coarse);
-    emit(coarse);
     placed_ = std::move(coarse);
+    return true;
+}
+
+/// Whether contacts matter is known only when there are some: the input is asked then.
+void Remesher::judge_input(CoarseMesh& mesh, Judge& judge) {
+    const bool is_cut_open = result_.statistics.non_manifold_edges + result_.statistics.split_vertices > 0;
+    if (is_cut_open) is_embedded_ = false;
+    if (!is_embedded_ && find_damage(judge, mesh, control_).contacts > 0) is_embedded_ = !has_contact(input_, control_);
+    judge.is_embedded = is_embedded_.value_or(true);
+}
+
+CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    judge_input(mesh, judge);
+    const Layout layout{best_->network, best_->graph, best_->faces, best_->nodes};
+    const double tolerance = error > 0.0 ? 0.7 * error : 0.5 * best_->error;
+    const MendingReport report = mend(layout, judge, {tolerance, error, options_.error ? error : 0.0}, mesh, control_);
+    RemeshStatistics& s = result_.statistics;
+    s.mended_regions = report.regions;
+    s.mended_triangles = report.triangles;
+    for (std::uint64_t round = 0; round < options_.subdivide; ++round) mesh = subdivide(mesh);
+    watch_.stage("mending");
+    return mesh;
+}
+
+/// Instead of a network: the input with fewer triangles.
+void Remesher::give_input(double tolerance) {
+    const std::size_t vertices = options_.vertices ? *options_.vertices : options_.faces ? *options_.faces / 2 : 0;
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    CoarseMesh mesh;
+    for (const double part : {1.0, 0.25, 1e-4}) {
+        mesh = thin_input(mesh_, judge, part * tolerance, vertices, control_);
+        judge_input(mesh, judge);
+        if (part == 1e-4 || control_.cancelled() || find_damage(judge, mesh, control_).polygons.empty()) break;
+    }
+    result_.statistics.mended_regions = mesh_.component_count;
+    result_.statistics.mended_triangles = mesh.polygon_count();
+    const std::string place = best_->flaws.empty() ? ""
+                                                   : ", first near (" + std::to_string(best_->flaws.front().x) + ", " +
+                                                         std::to_string(best_->flaws.front().y) + ", " +
+                                                         std::to_string(best_->flaws.front().z) + ")";
+    result_.statistics.notes.push_back("no network of lines will do" + place +
+                                       ": the result is made of triangles of the input, thinned out");
+    emit(mesh);
+}
+
+void Remesher::finish_count() {
+    if (!finish()) {
+        give_input(options_.vertices || options_.faces ? mesh_.diagonal : best_->error);
+        return;
+    }
+    const CoarseMesh mesh = mended(placed_, 0.0);
+    if (!control_.cancelled()) emit(mesh);
 }
 
 void Remesher::emit(const CoarseMesh& coarse) {
@@ -537,7 +616,7 @@ RemeshResult Remesher::run() {
     if (prepare()) {
         if (options_.vertices || options_.faces) {
             search();
-            if (best_ && !control_.cancelled()) finish();
+            if (best_ && !control_.cancelled()) finish_count();
         } else {
             meet_error();
         }

@@ -179,14 +179,6 @@ std::vector<Piece> pair_triangles(std::span<const Point3> ring) {
     return pieces;
 }
 
-/// A copy without polygons.
-CoarseMesh copy_vertices(const CoarseMesh& mesh) {
-    CoarseMesh copy = mesh;
-    copy.corners.clear();
-    copy.offsets = {0};
-    return copy;
-}
-
 std::vector<Point3> points_of(const CoarseMesh& mesh, std::span<const Index> ring) {
     std::vector<Point3> points;
     for (const Index v : ring) points.push_back(mesh.points[v]);
@@ -225,25 +217,27 @@ std::vector<std::vector<Index>> cut_into_quads(std::span<const Point3> ring) {
 }
 
 CoarseMesh make_quad_dominant(const CoarseMesh& mesh) {
-    CoarseMesh result = copy_vertices(mesh);
+    CoarseMesh result = mesh.without_polygons();
     for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
         const auto ring = mesh.polygon(q);
         for (Piece& piece : cut_into_quads(points_of(mesh, ring))) {
             for (Index& corner : piece) corner = ring[corner];
-            result.add_polygon(piece);
+            result.add_polygon(piece, mesh.parent(q));
         }
     }
     return result;
 }
 
 CoarseMesh make_triangles(const CoarseMesh& mesh, const core::TriangleTree& input) {
-    CoarseMesh result = copy_vertices(mesh);
-    for (const auto& t : triangulate(mesh, input)) result.add_polygon(t);
+    CoarseMesh result = mesh.without_polygons();
+    std::vector<Index> polygon_of;
+    const auto triangles = triangulate(mesh, input, &polygon_of);
+    for (std::size_t t = 0; t < triangles.size(); ++t) result.add_polygon(triangles[t], mesh.parent(polygon_of[t]));
     return result;
 }
 
 CoarseMesh limit_degree(const CoarseMesh& mesh, std::size_t most) {
-    CoarseMesh result = copy_vertices(mesh);
+    CoarseMesh result = mesh.without_polygons();
     for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
         const auto whole = mesh.polygon(q);
         std::vector<Piece> waiting{{whole.begin(), whole.end()}};
@@ -251,7 +245,7 @@ CoarseMesh limit_degree(const CoarseMesh& mesh, std::size_t most) {
             const Piece ring = std::move(waiting.back());
             waiting.pop_back();
             if (ring.size() <= std::max<std::size_t>(most, 3)) {
-                result.add_polygon(ring);
+                result.add_polygon(ring, mesh.parent(q));
                 continue;
             }
             const auto [i, j] = find_best_diagonal(points_of(mesh, ring));

@@ -48,7 +48,11 @@ struct WorkMesh {
     std::vector<Index> edge_halfedges;  ///< per edge: its first half-edge, which defines its direction
     std::vector<Index> edge_curves;     ///< per edge: its feature curve or no_index
     std::vector<FeatureCurve> curves;
-    std::vector<bool> is_corner;    ///< per vertex
+    std::vector<bool> is_corner;  ///< per vertex
+    /// What is a crease by angle but too short to be one of the curves: nothing follows it, but it must not get lost.
+    std::vector<Index> minor_edges;
+    std::vector<Index>
+        minor_corners;              ///< vertices: corners of all creases, minor ones too, that are none of the curves'
     std::vector<Index> components;  ///< per face
     std::vector<Index> patches;     ///< per face: parts between features
     Index patch_count = 0;

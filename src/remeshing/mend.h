@@ -1,0 +1,33 @@
+#pragma once
+// The last stage before a result: what is broken becomes input again, as little of it as will do.
+#include "remeshing/damage.h"
+#include "remeshing/region_patch.h"
+
+namespace certa::remeshing {
+
+struct MendingRule {
+    double tolerance = 0.0;  ///< by how much triangles of the input may be thinned out, in its unit
+    double error = 0.0;      ///< polygons farther than this are broken, too; 0: any distance will do
+    double reach = 0.0;      ///< how far a minor crease may be from the result; 0: as far as anything is
+};
+
+struct MendingReport {
+    std::size_t rounds = 0, regions = 0, faces = 0, triangles = 0;  ///< faces of the graph, and what replaces them
+    std::size_t split_quads = 0;
+    std::vector<Point3> left;  ///< where something is still broken: the input itself is
+};
+
+/// Replaces polygons that turn away, meet others or miss creases (and, on demand, that are too far) by thinned-out
+/// triangles of the input; where those fail, by all of them; where that fails, also around. In the end whole components
+/// are the input, which is sound by definition.
+///
+/// Guarantee: topology as before; what is not listed in `left` is free of folds and contacts. Deterministic.
+MendingReport mend(const Layout& layout, const Judge& judge, const MendingRule& rule, CoarseMesh& mesh,
+                   const RunControl& control);
+
+/// The input, thinned out: what is left where there is no network at all. `vertices`: about so many, 0 for as few as
+/// the tolerance allows.
+CoarseMesh thin_input(const WorkMesh& mesh, const Judge& judge, double tolerance, std::size_t vertices,
+                      const RunControl& control);
+
+}  // namespace certa::remeshing

@@ -1,0 +1,21 @@
+#pragma once
+// Fewer triangles in a patch of the input, as long as they stay close and nothing turns.
+#include "remeshing/damage.h"
+#include "remeshing/region_patch.h"
+
+namespace certa::remeshing {
+
+struct ThinningRule {
+    double tolerance = 0.0;              ///< distance that may be lost, in the input's unit
+    std::size_t least_vertices = 0;      ///< no fewer than this
+    std::vector<std::uint8_t> is_fixed;  ///< per corner of the patch: stays; outer corners always do
+};
+
+/// Collapses edges onto one of their ends, the least error first (Garland and Heckbert 1997). `points`: per corner of
+/// the patch. Vertices on creases move along them only; no edge between two outer corners is made.
+///
+/// Guarantee: the topology is kept, no triangle turns away from the input; contacts are not looked for.
+void thin_out(RegionPatch& patch, const std::vector<Point3>& points, const Judge& judge, const ThinningRule& rule,
+              const RunControl& control);
+
+}  // namespace certa::remeshing
