@@ -58,7 +58,7 @@ std::vector<std::uint32_t> vertices_from(const Integers& array, ElementKind kind
             defect.elements = {{kind, static_cast<std::uint32_t>(element)}};
             defect.message = std::string(name_of(kind)) + " " + std::to_string(element + 1) + " (row " +
                              std::to_string(element) + " from 0) names vertex " + std::to_string(in[i]) +
-                             "; indices run from 0 to " + std::to_string(vertex_count) + " - 1" +
+                             "; there are " + std::to_string(vertex_count) + ", counted from 0" +
                              (in[i] < 0 ? ", and do not count from the end" : "");
         }
     }

@@ -38,15 +38,15 @@ Mended mend(PiecewiseLinearComplex&& complex, ConformOptions& options, const Run
     return {std::move(repaired.complex), std::move(repaired.facet_sources), std::move(repaired.repairs)};
 }
 
-struct Finished {
+struct ConformRun {
     Mended input;
     ConformResult result;
     std::optional<ConformingCheck> check;
 };
 
-Finished conform_and_check(PiecewiseLinearComplex&& complex, ConformOptions options, bool verify,
-                           const RunControl& control) {
-    Finished finished;
+ConformRun conform_and_check(PiecewiseLinearComplex&& complex, ConformOptions options, bool verify,
+                             const RunControl& control) {
+    ConformRun finished;
     finished.input = mend(std::move(complex), options, control);
     if (control.cancelled()) return finished;
     finished.result = conform(finished.input.complex, options, control);
@@ -86,7 +86,7 @@ py::dict conform_to_python(const py::object& object, const py::dict& given, bool
     ConformOptions options;
     set_options(frontend::conform_options(), options, given);
     PiecewiseLinearComplex complex = document_from(object).complex;
-    Finished finished =
+    ConformRun finished =
         run({progress, threads}, [complex = std::move(complex), options, verify](const RunControl& control) mutable {
             return conform_and_check(std::move(complex), options, verify, control);
         });

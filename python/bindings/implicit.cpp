@@ -24,14 +24,14 @@ ImplicitEngine engine_from(const std::string& name) {
     throw frontend::OptionError("engine: '" + name + "' is not one of growth|plantinga-vegter");
 }
 
-struct Finished {
+struct ImplicitRun {
     ImplicitResult result;
     std::optional<ImplicitCheck> check;
 };
 
-Finished mesh_and_check(const Expression& function, const std::string& source, const Point3& low, const Point3& high,
-                        const ImplicitOptions& options, bool verify, const RunControl& control) {
-    Finished finished;
+ImplicitRun mesh_and_check(const Expression& function, const std::string& source, const Point3& low, const Point3& high,
+                           const ImplicitOptions& options, bool verify, const RunControl& control) {
+    ImplicitRun finished;
     finished.result = mesh_implicit(function, low, high, options, control);
     const ImplicitResult& result = finished.result;
     if (!verify || result.verdict == ImplicitVerdict::undecided || result.certificate.empty()) return finished;
@@ -90,7 +90,7 @@ py::dict implicit(const Expression& function, const Doubles& box, const py::dict
     options.certificate = options.engine == ImplicitEngine::growth;
     if (!memory_bytes.is_none()) options.memory_bytes = py::cast<std::uint64_t>(memory_bytes);
     const std::string source = format_expression(function);
-    Finished finished =
+    ImplicitRun finished =
         run({progress, threads}, [function, source, low, high, options, verify](const RunControl& control) {
             return mesh_and_check(function, source, low, high, options, verify, control);
         });

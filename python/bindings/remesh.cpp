@@ -55,14 +55,15 @@ PolygonMesh polygons_of(const TriangleMesh& mesh) {
     return polygons;
 }
 
-struct Finished {
+struct RemeshRun {
     TriangulatedSurface input;
     RemeshResult result;
     std::optional<SurfaceCheck> check;
 };
 
-Finished remesh_and_check(const MeshDocument& document, RemeshOptions options, bool verify, const RunControl& control) {
-    Finished finished;
+RemeshRun remesh_and_check(const MeshDocument& document, RemeshOptions options, bool verify,
+                           const RunControl& control) {
+    RemeshRun finished;
     finished.input = triangulate(document);
     options.features.insert(options.features.end(), document.complex.segments.begin(), document.complex.segments.end());
     finished.result = remesh(finished.input.mesh, options, control);
@@ -90,7 +91,7 @@ py::dict remesh_to_python(const py::object& object, const py::dict& given, const
     options.lines = lines;
     MeshDocument document = document_from(object);
     options.features = elements_from<Edge>(features, ElementKind::edge, document.complex.positions.size());
-    Finished finished =
+    RemeshRun finished =
         run({progress, threads}, [document = std::move(document), options, verify](const RunControl& control) {
             return remesh_and_check(document, options, verify, control);
         });

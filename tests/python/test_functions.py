@@ -46,6 +46,8 @@ def test_measures_of_regions():
     half = certa.curvature(CUBE, CUBE_FACES, region="ball:0,0,0:5 & halfspace:0.5,0,0:1,0,0").measures
     assert numpy.isclose(half.area, 3)
     assert numpy.isclose(certa.curvature(CUBE, CUBE_FACES, region=[0, 3]).measures.area, 2)
+    mask = numpy.arange(6) < 2
+    assert numpy.isclose(certa.curvature(CUBE, CUBE_FACES, region=mask).measures.area, 2)
     with pytest.raises(certa.InputError, match="polygon 1"):
         certa.curvature(CUBE, CUBE_FACES, region=[6])
 

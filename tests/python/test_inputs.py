@@ -57,6 +57,54 @@ def test_objects_of_other_packages():
     assert same(certa.conform((row for row in CUBE.tolist()), (row for row in CUBE_FACES.tolist())))
 
 
+def test_objects_of_more_packages():
+    quads = types.SimpleNamespace(type="quad", data=CUBE_FACES)
+    assert same(certa.conform(types.SimpleNamespace(vertices=CUBE, triangles=CUBE_FACES)))
+    assert same(certa.conform(types.SimpleNamespace(points=CUBE, cells=[quads])))
+    with pytest.raises(TypeError, match="hexahedron"):
+        certa.conform(types.SimpleNamespace(points=CUBE, cells=[types.SimpleNamespace(type="hexahedron", data=[[0] * 8])]))
+    tetra = types.SimpleNamespace(type="tetra", data=REFERENCE.tetrahedra)
+    assert numpy.isclose(certa.curvature(types.SimpleNamespace(points=CUBE, cells=[tetra])).total.area, 6)
+
+
+def test_data_frames():
+    pandas = pytest.importorskip("pandas")
+    assert same(certa.conform(pandas.DataFrame(CUBE), pandas.DataFrame(CUBE_FACES)))
+
+
+def test_attributes_that_users_change_are_checked_again():
+    document = certa.MeshDocument(CUBE, CUBE_FACES)
+    document.positions = CUBE.tolist()
+    assert same(certa.conform(document))
+    for name, value, error in [
+        ("positions", None, TypeError),
+        ("positions", CUBE[:, :2], ValueError),
+        ("corners", document.corners[:-1], ValueError),
+        ("polygon_offsets", [0, 30, 4, 24], ValueError),
+        ("facet_offsets", [], ValueError),
+        ("hole_offsets", [0, 0], ValueError),
+        ("facet_markers", [1, 2], ValueError),
+        ("facet_markers", [2**40] * 6, ValueError),
+        ("segments", [[0, 1, 2]], ValueError),
+        ("tetrahedra", [[0, 1, 2, 9]], certa.InputError),
+        ("fields", {"vertices": {"a": [1, 2, 3]}}, ValueError),
+        ("fields", {"vertices": {"a": ["x"] * 8}}, ValueError),
+        ("fields", {"corners": {}}, ValueError),
+    ]:
+        document = certa.MeshDocument(CUBE, CUBE_FACES)
+        setattr(document, name, value)
+        with pytest.raises(error):
+            certa.view(document)
+
+
+def test_messages_speak_of_arguments():
+    crossing = numpy.vstack([CUBE, CUBE + 0.5]), numpy.vstack([CUBE_FACES, CUBE_FACES + 8])
+    with pytest.raises(certa.InputError, match="use repair=True") as caught:
+        certa.conform(crossing)
+    assert all("--" not in defect.message for defect in caught.value.defects)
+    assert certa.conform(crossing, repair=True).outcome == "done"
+
+
 def test_files_are_meshes(tmp_path):
     certa.write(tmp_path / "cube.off", CUBE, CUBE_FACES)
     assert same(certa.conform(tmp_path / "cube.off")) and same(certa.conform(str(tmp_path / "cube.off")))
