@@ -13,14 +13,14 @@
 #include <cstdint>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <numeric>
 #include <set>
-
-#include "session.h"
 
 namespace certa::cli {
 namespace {
 
+using Json = nlohmann::json;
 using GridBox = std::array<std::array<std::int64_t, 3>, 2>;  ///< low and high corner
 
 /// Points, polygons and labels that grow box by box.
