@@ -36,6 +36,8 @@ py::dict bound_to_python(const ApproximationBound& b) {
     out["curvature_estimated"] = b.curvature_estimated;
     out["relative_height"] = b.relative_height;
     out["hypothesis_holds"] = b.hypothesis_holds;
+    out["height"] = b.height;
+    out["normal_angle_radians"] = b.normal_angle_radians;
     out["gaussian"] = to_python(b.gaussian);
     out["mean"] = to_python(b.mean);
     out["tensor"] = to_python(b.tensor);

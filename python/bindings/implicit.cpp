@@ -19,9 +19,10 @@ std::optional<double> length_from(const char* name, const py::object& value, dou
 }
 
 ImplicitEngine engine_from(const std::string& name) {
-    for (const ImplicitEngine engine : {ImplicitEngine::growth, ImplicitEngine::plantinga_vegter})
+    for (const ImplicitEngine engine :
+         {ImplicitEngine::growth, ImplicitEngine::plantinga_vegter, ImplicitEngine::thesis})
         if (name == name_of(engine)) return engine;
-    throw frontend::OptionError("engine: '" + name + "' is not one of growth|plantinga-vegter");
+    throw frontend::OptionError("engine: '" + name + "' is not one of growth|plantinga-vegter|thesis");
 }
 
 struct ImplicitRun {
@@ -87,7 +88,7 @@ py::dict implicit(const Expression& function, const Doubles& box, const py::dict
     options.error = length_from("error", error, diagonal);
     options.hausdorff = length_from("hausdorff", hausdorff, diagonal);
     options.engine = engine_from(engine);
-    options.certificate = options.engine == ImplicitEngine::growth;
+    options.certificate = options.engine != ImplicitEngine::plantinga_vegter;
     if (!memory_bytes.is_none()) options.memory_bytes = py::cast<std::uint64_t>(memory_bytes);
     const std::string source = format_expression(function);
     ImplicitRun finished =

@@ -32,6 +32,8 @@ py::dict statistics_of(const RemeshStatistics& s) {
     out["spacing_error"] = s.spacing_error;
     out["smoothing"] = s.smoothing;
     out["rounds"] = s.rounds;
+    out["mended_regions"] = s.mended_regions;
+    out["mended_triangles"] = s.mended_triangles;
     out["distance_bound"] = s.distance_bound;
     out["vertices"] = s.vertices;
     out["faces"] = s.faces;

@@ -291,8 +291,8 @@ def implicit(
         refine and simplify to this distance from the zero set, as sampled; as fine as the proof by default
     hausdorff : length, optional
         prove that mesh and zero set are within this length of each other
-    engine : 'growth' or 'plantinga-vegter', default 'growth'
-        the latter writes no certificate
+    engine : 'growth', 'plantinga-vegter' or 'thesis', default 'growth'
+        the second writes no certificate
     {options}
     memory_bytes : int, optional
         stop before more would be taken; what is free by default

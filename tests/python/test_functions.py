@@ -96,6 +96,15 @@ def test_undecided_is_told_and_warned_of():
     assert certa.implicit("x^2 + y^2 + z^2 - 1", level=-2).verdict == "empty"
 
 
+@pytest.mark.parametrize("engine", ["growth", "plantinga-vegter", "thesis"])
+def test_engines(engine):
+    result = certa.implicit("x^2 + y^2 + z^2 - 1", engine=engine)
+    assert result.verdict == "certified" and [component.genus for component in result.components] == [0]
+    assert result.proved == ([] if engine == "plantinga-vegter" else ["isotopic"])
+    with pytest.raises(certa.InputError, match="growth"):
+        certa.implicit("x", engine="cubes")
+
+
 def test_level_and_lengths():
     result = certa.implicit("x^2 + y^2 + z^2", box=(-3, -3, -3, 3, 3, 3), level=4, hausdorff="2%")
     assert result.proved == ["isotopic", "hausdorff"] and result.hausdorff <= 0.02 * 108**0.5
