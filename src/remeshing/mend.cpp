@@ -260,7 +260,7 @@ private:
         const core::TriangleTree edge_tree(result_.points, edges), vertex_tree(result_.points, vertices),
             surface(result_.points, filled);
         const double reach =
-            rule_.reach > 0.0 ? rule_.reach : std::max(largest_distance(surface), 1e-6 * judge_.diagonal);
+            rule_.reach > 0.0 ? rule_.reach : std::max(largest_distance(surface, triangles), 1e-6 * judge_.diagonal);
         const auto demand = [&](const core::TriangleTree& tree, const Point3& p) {
             if (tree.find_nearest(p).squared_distance > 0.98 * reach * reach)
                 broken.push_back(polygon_of[surface.find_nearest(p).triangle]);
@@ -272,10 +272,16 @@ private:
             if (mesh_.edge_curves[e] != no_index)
                 for (const double s : {0.0, 0.5, 1.0}) demand(edge_tree, mesh_.point_on(e, s));
     }
-    /// Of the input's vertices from the result.
-    double largest_distance(const core::TriangleTree& surface) const {
+    /// Of the input's vertices from the result, and of its triangles' middles, sides and corners from the input.
+    double largest_distance(const core::TriangleTree& surface, const CoarseMesh& triangles) const {
         double square = 0.0;
         for (const Point3& p : mesh_.points) square = std::max(square, surface.find_nearest(p).squared_distance);
+        for (std::size_t q = 0; q < triangles.polygon_count(); ++q) {
+            const auto t = triangles.polygon(q);
+            const Point3 &a = triangles.points[t[0]], &b = triangles.points[t[1]], &c = triangles.points[t[2]];
+            for (const Point3& p : {(1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), a, b, c})
+                square = std::max(square, judge_.tree.find_nearest(p).squared_distance);
+        }
         return std::sqrt(square);
     }
 
