@@ -3,7 +3,7 @@
 // A ladder of radii, sqrt(2) apart, in units of the local edge length. From one rung to the next the estimate changes
 // by noise where the ball is too small and by the surface's own variation where it is too large; the radius between the
 // two rungs where it changes least is a balance of both (the quasi-optimality criterion, a relative of Lepski's).
-// Changes are averaged over the vertex and its neighbours, or chance would choose.
+// Changes are averaged over the vertex and its neighbours, or chance would choose; places on the ladder are smoothed.
 // One traversal serves all rungs: for the choice, not for the estimate, a dual cell counts as a point mass at its
 // vertex, and the order 2 kernel (1 - r^2 / R^2)^2 of every radius R comes from sums of 1, r^2 and r^4.
 #include <algorithm>
@@ -158,7 +158,16 @@ private:
                 pool.give_back(std::move(ladder));
             });
         }
-        core::parallel_for(n, 4096, control, [&](std::size_t begin, std::size_t end) {
+        const std::vector<double> chosen = smoothed(find_least(changes, control), control);
+        for (std::size_t v = 0; v < n; ++v) radii_[v] = rung(chosen[v]) * edges[v];
+    }
+
+    /// Per vertex, the place on the ladder between the rungs where the estimate changes least.
+    std::vector<double> find_least(const std::vector<std::array<float, rungs - 1>>& changes,
+                                   const RunControl& control) const {
+        const Surface& surface = context_.surface;
+        std::vector<double> places(changes.size());
+        core::parallel_for(changes.size(), 4096, control, [&](std::size_t begin, std::size_t end) {
             for (std::size_t v = begin; v < end; ++v) {
                 std::array<double, rungs - 1> average{};
                 const auto take = [&](Index w) {
@@ -166,11 +175,28 @@ private:
                 };
                 take(static_cast<Index>(v));
                 for (const Index w : surface.vertex_neighbors[v]) take(w);
-                const auto least =
-                    static_cast<std::size_t>(std::min_element(average.begin(), average.end()) - average.begin());
-                radii_[v] = rung(static_cast<double>(least) + 0.5) * edges[v];
+                const auto least = std::min_element(average.begin(), average.end()) - average.begin();
+                places[v] = static_cast<double>(least) + 0.5;
             }
         });
+        return places;
+    }
+
+    /// Radii that jump between neighbours would show as patches.
+    std::vector<double> smoothed(std::vector<double> places, const RunControl& control) const {
+        constexpr int rounds = 4;
+        std::vector<double> next(places.size());
+        for (int round = 0; round < rounds; ++round) {
+            core::parallel_for(places.size(), 4096, control, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t v = begin; v < end; ++v) {
+                    double sum = places[v], count = 1.0;
+                    for (const Index w : context_.surface.vertex_neighbors[v]) sum += places[w], count += 1.0;
+                    next[v] = sum / count;
+                }
+            });
+            places.swap(next);
+        }
+        return places;
     }
 
     BallContext context_;

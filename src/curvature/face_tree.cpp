@@ -81,6 +81,7 @@ private:
 
 FaceTree build_face_tree(const Surface& surface, const Cells& cells) {
     FaceTree tree;
+    if (surface.faces.empty()) return tree;
     const std::size_t leaves = surface.faces.size() / (FaceTree::leaf_size / 2) + 2;
     tree.nodes.reserve(2 * leaves);
     tree.sums.reserve(2 * leaves);

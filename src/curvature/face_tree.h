@@ -12,7 +12,7 @@ struct FaceTree {
         Index first = 0, last = 0;                ///< faces
         Index left = no_index, right = no_index;  ///< children; none for leaves
     };
-    std::vector<Node> nodes;                       ///< the root is node 0
+    std::vector<Node> nodes;                       ///< the root is node 0; none without faces
     std::vector<Sums> sums;                        ///< per node
     std::vector<std::array<bool, 3>> owns_corner;  ///< per face
 };

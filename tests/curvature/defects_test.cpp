@@ -86,6 +86,26 @@ TEST(Defects, RepeatedAndUnusedVertices) {
     expect_sane(r);
 }
 
+/// From a binary STL whose three corners merged into one: nothing is left to measure, by any neighbourhood.
+TEST(Defects, NothingButRepeatedVertices) {
+    const TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}}, {triangle(0, 0, 0), triangle(0, 1, 0)}};
+    for (const bool sheets : {false, true})
+        for (const Neighborhood neighborhood :
+             {Neighborhood::ball, Neighborhood::rings, Neighborhood::geodesic, Neighborhood::automatic_ball}) {
+            if (sheets && neighborhood != Neighborhood::ball) continue;
+            CurvatureOptions options{.neighborhood = neighborhood, .all_sheets = sheets};
+            options.radius = {5.0, false};
+            const CurvatureResult r = compute_curvature(mesh, options);
+            EXPECT_EQ(r.statistics.repeated_vertices, 2U);
+            EXPECT_EQ(r.flags[0], vertex_flags::unused);
+            EXPECT_EQ(r.total.area, 0.0);
+            expect_sane(r);
+        }
+    for (const Estimator estimator : {Estimator::corrected, Estimator::jet, Estimator::automatic})
+        expect_sane(compute_curvature(mesh, {.estimator = estimator}));
+    EXPECT_EQ(compute_region_measures(mesh, Region{}, {.bounds = true}).measures.area, 0.0);
+}
+
 TEST(Defects, TrianglesThatShareAnEdgeThreefold) {
     TriangleMesh mesh;
     mesh.positions = {{0, 0, 0}, {0, 0, 1}, {1, 0, 0}, {-1, 1, 0}, {-1, -1, 0}};
@@ -119,6 +139,13 @@ TEST(Defects, RandomSoupsAreMeasuredWithoutNonsense) {
         }
         for (const Rim rim : {Rim::half, Rim::closed, Rim::open})
             expect_sane(compute_curvature(mesh, {.rim = rim, .bounds = true}));
+        for (const Weight weight : {Weight::indicator, Weight::kernel2, Weight::kernel4})
+            for (const Estimator estimator : {Estimator::corrected, Estimator::normal_cycle}) {
+                CurvatureOptions options{.neighborhood = Neighborhood::ball, .weight = weight, .estimator = estimator};
+                options.radius.value = random.uniform(0.1, 2.0);
+                expect_sane(compute_curvature(mesh, options));
+            }
+        expect_sane(compute_curvature(mesh, {.weight = Weight::kernel2}));
         for (const Estimator estimator : {Estimator::corrected, Estimator::jet, Estimator::automatic})
             expect_sane(compute_curvature(mesh, {.estimator = estimator}));
         compute_region_measures(mesh, make_ball_region(random_point(random), 0.7), {.bounds = true});
