@@ -315,12 +315,17 @@ std::vector<Family> make_small_families() {
     };
     for (const double angle : {360.0, 90.0, 10.0, 1.0, 0.1, 0.01, 0.001}) {
         const double width = angle * degree;
+        const bool sharp = angle <= 10.0;
         const std::string at = " " + std::to_string(angle);
-        all.push_back({"fan" + at, [=](std::uint64_t s) { return make_fan(small(s, 2, 14), width, s); }});
-        all.push_back({"book" + at, [=](std::uint64_t s) { return make_book(small(s, 2, 14), 0.9 * width); }});
-        all.push_back({"wedge" + at, [=](std::uint64_t s) { return make_wedge(0.45 * width / (1 + s % 50), s % 2 == 0); }});
+        all.push_back({"fan" + at, [=](std::uint64_t s) { return make_fan(small(s, 2, 14), width, s); }, false, sharp});
+        all.push_back(
+            {"book" + at, [=](std::uint64_t s) { return make_book(small(s, 2, 14), 0.9 * width); }, false, sharp});
+        all.push_back({"wedge" + at,
+                       [=](std::uint64_t s) { return make_wedge(0.45 * width / (1 + s % 50), s % 2 == 0); }, false,
+                       sharp});
         if (width < 2) {
-            all.push_back({"cone" + at, [=](std::uint64_t s) { return make_cone(small(s, 2, 9), width, s); }, true});
+            all.push_back(
+                {"cone" + at, [=](std::uint64_t s) { return make_cone(small(s, 2, 9), width, s); }, true, sharp});
         }
     }
     all.push_back({"star 1", [=](std::uint64_t s) { return make_star(small(s, 3, 60), 1.0, s); }});

@@ -57,7 +57,8 @@ std::vector<DefectKind> expect_refused(const PiecewiseLinearComplex& complex, co
 struct Family {
     std::string name;
     std::function<PiecewiseLinearComplex(std::uint64_t seed)> make;
-    bool hard = false;  ///< may end in an outcome that says where
+    bool hard = false;   ///< may end in an outcome that says where
+    bool sharp = false;  ///< facets meet at ten degrees or less: protecting balls are small, and many
 };
 /// All families of generators.h with a range of their parameters, small: up to some hundred facets.
 const std::vector<Family>& small_families();
