@@ -28,7 +28,7 @@ class BoxDocument {
 public:
     explicit BoxDocument(const Point3& low, const Point3& high) {
         std::array<VertexId, 8> corners;
-        for (unsigned c = 0; c < 8; ++c) corners[c] = add_point(corner_of(low, high, c), 0);
+        for (unsigned c = 0; c < 8; ++c) corners[c] = add_point(corner_of(low, high, c), 0, 0);
         for (unsigned a = 0; a < 8; ++a)
             for (unsigned axis = 1; axis < 8; axis *= 2)
                 if ((a & axis) == 0) document_.complex.segments.push_back({corners[a], corners[a | axis]});
@@ -40,7 +40,7 @@ public:
         std::array<VertexId, 8> corners;
         corners.fill(VertexId{no_index});
         const auto corner = [&](unsigned c) {
-            if (index_of(corners[c]) == no_index) corners[c] = add_point(corner_of(low, high, c), 0);
+            if (index_of(corners[c]) == no_index) corners[c] = add_point(corner_of(low, high, c), 0, 0);
             return corners[c];
         };
         for (int side = 0; side < 6; ++side) {
@@ -56,7 +56,7 @@ public:
         }
         // Boxes may be too small to be seen: their places are not.
         if (marked_.insert(label).second || sign == 0)
-            add_point({(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2}, label);
+            add_point({(low.x + high.x) / 2, (low.y + high.y) / 2, (low.z + high.z) / 2}, label, sign);
     }
     MeshDocument finish(const char* label_name, bool with_signs) {
         if (boxes_ > 0) {
@@ -64,13 +64,14 @@ public:
             add_field(label_name, Location::polygons, labels_);
             if (with_signs) add_field("sign", Location::polygons, signs_);
             add_field(label_name, Location::vertices, point_labels_);
+            if (with_signs) add_field("sign", Location::vertices, point_signs_);
         }
         return std::move(document_);
     }
 
 private:
     MeshDocument document_;
-    std::vector<std::int64_t> boxes_of_, labels_, signs_, point_labels_;
+    std::vector<std::int64_t> boxes_of_, labels_, signs_, point_labels_, point_signs_;
     std::set<std::int64_t> marked_;
     std::int64_t boxes_ = 0;
 
@@ -80,9 +81,10 @@ private:
     static Point3 corner_of(const Point3& low, const Point3& high, unsigned c) {
         return {(c & 1U) != 0 ? high.x : low.x, (c & 2U) != 0 ? high.y : low.y, (c & 4U) != 0 ? high.z : low.z};
     }
-    VertexId add_point(const Point3& place, std::int64_t label) {
+    VertexId add_point(const Point3& place, std::int64_t label, std::int64_t sign) {
         document_.complex.positions.push_back(place);
         point_labels_.push_back(label);
+        point_signs_.push_back(sign);
         return VertexId{static_cast<std::uint32_t>(point_labels_.size() - 1)};
     }
 };

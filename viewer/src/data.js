@@ -45,7 +45,7 @@ class Field {
   }
   /// The label whose vertices are not shown as points: those of the input, or of no umbilic, say nothing.
   get hides() {
-    return ['source_kind', 'umbilic_half_turns', 'cluster', 'reason'].includes(this.name) && this.location === 'vertices' ? 0 : null;
+    return ['source_kind', 'umbilic_half_turns', 'cluster', 'reason', 'sign'].includes(this.name) && this.location === 'vertices' ? 0 : null;
   }
   /// Distinct values in ascending order, for labels.
   get categories() {

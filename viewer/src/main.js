@@ -79,7 +79,7 @@ class App {
     const range = automaticRange ? this.rangeOf(field) : state.range;
     const directions = this.directionSlots(model);
     const ground = this.groundOf(model);
-    const marks = field?.isLabel && field.location === 'vertices' ? field : model.marks;
+    const marks = field?.isLabel && field.location === 'vertices' ? field : this.marksOf(model, field);
     return {
       ground, marks, groundAs: state.groundAs ?? (model.hasSurface ? 'glass' : 'solid'), balls: model.balls !== null && state.balls !== false,
       directions, model, solid, field, range, automaticRange, up,
@@ -94,6 +94,12 @@ class App {
       panel: state.panel ?? innerWidth > 640,
       bare: state.bare ?? false,
     };
+  }
+
+  /// Vertices that stand out; those of boxes in the colours of the boxes.
+  marksOf(model, field) {
+    const same = (one) => one.location === 'vertices' && one.isLabel && one.name === field.name;
+    return (model.entry.overlay && field && model.fields.find(same)) || model.marks;
   }
 
   /// The file whose surface is drawn under the model: the state's, else, for lines and boxes, one of the same name, else the first.
