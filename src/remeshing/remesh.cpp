@@ -588,7 +588,13 @@ void Remesher::finish_count() {
         return;
     }
     const CoarseMesh mesh = mended(placed_, 0.0);
-    if (!control_.cancelled()) emit(mesh);
+    if (control_.cancelled()) return;
+    emit(mesh);
+    const double before = static_cast<double>(placed_.points.size()), after = static_cast<double>(mesh.points.size());
+    if (options_.subdivide == 0 && after > 1.05 * before)
+        result_.statistics.notes.push_back(
+            "mending has added " + std::to_string(mesh.points.size() - placed_.points.size()) + " vertices to the " +
+            std::to_string(placed_.points.size()) + " that the count asked for");
 }
 
 void Remesher::emit(const CoarseMesh& coarse) {
