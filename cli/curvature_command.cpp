@@ -257,7 +257,10 @@ ExitCode run_curvature(Session& session, const CurvatureArguments& arguments) {
     }
     MeshDocument document = session.read(arguments.input, "input");
     const std::uint64_t corners = document.complex.corners.size() + 12 * document.tetrahedra.size();
-    session.require_memory(260 * corners + 600 * document.complex.positions.size(), "curvature of this mesh");
+    // 10M triangles with 3 rings take 3.9 GB in the library (docs/performance.md); balls keep two tensors per edge.
+    const bool rings = arguments.options.neighborhood == Neighborhood::rings;
+    session.require_memory((rings ? 140 : 200) * corners + 300 * document.complex.positions.size(),
+                           "curvature of this mesh");
     const TriangulatedSurface surface =
         session.timed("triangulate", [&] { return triangulate(document, arguments.solid); });
     session.report()["options"] = to_json(frontend::curvature_options(), arguments.options, 0.0);
