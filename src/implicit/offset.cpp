@@ -1,10 +1,12 @@
 // Each triangle is moved along the gradients at its corners; f is enclosed on it by the mean value form, whose linear
-// part is extreme at corners; where that is not enough, on four pieces of it.
+// part is extreme at corners; where that is not enough, on four pieces of it. Triangles that turn over on the way count
+// as far, too.
 #include "implicit/offset.h"
 
 #include <cmath>
 
 #include "core/parallel.h"
+#include "core/vector3.h"
 #include "implicit/field.h"
 
 namespace certa::implicit {
@@ -50,6 +52,20 @@ private:
     expression::Workspace<Interval> workspace_;
 };
 
+/// Whether no prism between a triangle with sides e1, e2 and the one whose corners are moved by d turns over: the
+/// checker's test of the Bernstein coefficients of the Jacobian at the corners, with more margin.
+bool keeps_turning(const Point3& e1, const Point3& e2, const std::array<Point3, 3>& d, int side) {
+    const Point3 g1 = d[1] - d[0], g2 = d[2] - d[0];
+    const Point3 a = cross(e1, e2), b = cross(e1, g2) + cross(g1, e2), c = cross(g1, g2);
+    const double reach = (norm(e1) + norm(d[0]) + norm(d[1])) * (norm(e2) + norm(d[0]) + norm(d[2]));
+    for (const Point3& way : d) {
+        const double least = 0x1p-42 * reach * norm(way);
+        const double first = side * dot(a, way), linear = side * dot(b, way), square = side * dot(c, way);
+        if (!(first > least) || !(first + linear / 2 > least) || !(first + linear + square > least)) return false;
+    }
+    return true;
+}
+
 }  // namespace
 
 std::vector<std::uint32_t> find_far_triangles(const TriangleMesh& mesh, double length, const expression::Tape& tape,
@@ -67,12 +83,15 @@ std::vector<std::uint32_t> find_far_triangles(const TriangleMesh& mesh, double l
         for (std::size_t i = begin; i < end && !control.cancelled(); ++i) {
             for (const int side : {1, -1}) {
                 std::array<Region, 3> t;
+                std::array<Point3, 3> at, moves;
                 for (std::size_t k = 0; k < 3; ++k) {
                     const std::uint32_t v = index_of(mesh.triangles[i][k]);
                     const Point3 &p = mesh.positions[v], &w = ways[v];
+                    at[k] = p;
+                    moves[k] = static_cast<double>(side) * w;
                     t[k] = {Interval(p.x + side * w.x), Interval(p.y + side * w.y), Interval(p.z + side * w.z)};
                 }
-                if (!signs.proves(t, side)) far[i] = 1;
+                if (!keeps_turning(at[1] - at[0], at[2] - at[0], moves, side) || !signs.proves(t, side)) far[i] = 1;
             }
         }
     });
