@@ -262,15 +262,15 @@ private:
         const double reach =
             rule_.reach > 0.0 ? rule_.reach : std::max(largest_distance(surface, triangles), 1e-6 * judge_.diagonal);
         const auto demand = [&](const core::TriangleTree& tree, const Point3& p) {
-            if (tree.find_nearest(p).squared_distance > 0.98 * reach * reach)
+            if (tree.find_nearest(p).squared_distance > 0.8 * reach * reach)
                 broken.push_back(polygon_of[surface.find_nearest(p).triangle]);
         };
         for (const Index v : mesh_.minor_corners) demand(vertex_tree, mesh_.points[v]);
         for (const Index e : mesh_.minor_edges)
-            for (const double s : {0.0, 0.25, 0.5, 0.75, 1.0}) demand(edge_tree, mesh_.point_on(e, s));
+            for (double s = 0.0; s <= 1.0; s += 0.125) demand(edge_tree, mesh_.point_on(e, s));
         for (Index e = 0; e < mesh_.edge_curves.size(); ++e)
             if (mesh_.edge_curves[e] != no_index)
-                for (const double s : {0.0, 0.5, 1.0}) demand(edge_tree, mesh_.point_on(e, s));
+                for (double s = 0.0; s <= 1.0; s += 0.125) demand(edge_tree, mesh_.point_on(e, s));
     }
     /// Of the input's vertices from the result, and of its triangles' middles, sides and corners from the input.
     double largest_distance(const core::TriangleTree& surface, const CoarseMesh& triangles) const {
