@@ -58,10 +58,11 @@ struct RemeshStatistics {
     std::size_t wedges = 0, trisectors = 0;
     int umbilic_half_turns = 0;  ///< sum of all indices times two
     std::size_t lines_min = 0, lines_max = 0, closed_lines = 0;
-    double spacing_error = 0.0;   ///< epsilon of the spacing of lines, as resolved
-    double smoothing = 0.0;       ///< smoothing length, as resolved
-    std::size_t rounds = 0;       ///< networks that were traced to meet what was asked for
-    /// Where polygons would turn away, meet or be too far, triangles of the input stand: regions of these, and triangles.
+    double spacing_error = 0.0;  ///< epsilon of the spacing of lines, as resolved
+    double smoothing = 0.0;      ///< smoothing length, as resolved
+    std::size_t rounds = 0;      ///< networks that were traced to meet what was asked for
+    /// Where polygons would turn away, meet or be too far, triangles of the input stand: regions of these, and
+    /// triangles.
     std::size_t mended_regions = 0, mended_triangles = 0;
     double distance_bound = 0.0;  ///< where an error was asked for: proved, both ways, in the input's unit
     std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0;
