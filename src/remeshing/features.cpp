@@ -1,6 +1,7 @@
 // Creases, boundary and corners (remesh, stage 1; thesis 4.1.5).
 //
-// Plan: mark boundary edges, tagged edges, and edges with a dihedral angle above the limit; forget groups of creases by
+// Plan: mark boundary edges, tagged edges, and edges with a dihedral angle above the limit, also between the faces that
+// slivers lie between; forget groups of creases by
 // angle that are shorter than a few edges and touch nothing else (noise, not design); corners are where not exactly two
 // marked edges meet, or two meet at a sharp turn; chains between corners are curves, closed chains too.
 #include <algorithm>
@@ -19,6 +20,24 @@ Point3 normal_of(const WorkMesh& mesh, Index f) {
     return cross(mesh.points[b] - mesh.points[a], mesh.points[c] - mesh.points[a]);
 }
 
+/// The face that a half-edge belongs to or, as the normals of slivers say nothing, the first one beyond: out of a
+/// sliver by the longer of its other two sides. A side of slivers is sharp where what they lie between is.
+Index face_beyond_slivers(const WorkMesh& mesh, Index h) {
+    constexpr double least_height = 5e-4;  // of the diagonal
+    const auto length = [&](Index side) {
+        return distance(mesh.points[mesh.start_of(side)], mesh.points[mesh.end_of(side)]);
+    };
+    for (int step = 0; step < 8; ++step) {
+        const Index next = next_of(h), last = next_of(next);
+        const double longest = std::max({length(h), length(next), length(last)});
+        if (norm(normal_of(mesh, h / 3)) >= least_height * mesh.diagonal * longest) break;
+        const Index beyond = mesh.opposites[length(next) >= length(last) ? next : last];
+        if (beyond == no_index) break;
+        h = beyond;
+    }
+    return h / 3;
+}
+
 std::vector<Mark> mark_edges(const WorkMesh& mesh, const RemeshOptions& options) {
     std::vector<Mark> marks(mesh.edge_halfedges.size(), Mark::none);
     const double limit = std::cos(options.feature_angle_radians);
@@ -33,9 +52,13 @@ std::vector<Mark> mark_edges(const WorkMesh& mesh, const RemeshOptions& options)
             marks[e] = Mark::tagged;
             continue;
         }
-        const Point3 n = normal_of(mesh, h / 3), m = normal_of(mesh, o / 3);
-        const double lengths = norm(n) * norm(m);
-        if (lengths > 0.0 && dot(n, m) < limit * lengths) marks[e] = Mark::angle;
+        const auto is_sharp = [&](Index first, Index second) {
+            const Point3 n = normal_of(mesh, first), m = normal_of(mesh, second);
+            const double lengths = norm(n) * norm(m);
+            return lengths > 0.0 && dot(n, m) < limit * lengths;
+        };
+        if (is_sharp(h / 3, o / 3) && is_sharp(face_beyond_slivers(mesh, h), face_beyond_slivers(mesh, o)))
+            marks[e] = Mark::angle;
     }
     return marks;
 }

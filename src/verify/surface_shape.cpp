@@ -58,11 +58,73 @@ struct MarkedEdge {
     double length = 0.0;
 };
 
+double diagonal_of(const PolygonMesh& mesh) {
+    Point3 low = mesh.positions.front(), high = low;
+    for (const VertexId v : mesh.corners) {
+        const Point3& p = mesh.positions[index_of(v)];
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    return distance(low, high);
+}
+
+/// Which polygon stands for a side's own in a dihedral angle: as the normals of triangles lower than 5e-4 of the
+/// diagonal say nothing, the first one beyond them, out of each by the longer of its other two sides.
+class BeyondSlivers {
+public:
+    BeyondSlivers(const PolygonMesh& mesh, const std::vector<PolygonSide>& sides)
+        : mesh_(mesh), sides_(sides), least_(5e-4 * diagonal_of(mesh)), mates_(sides.size(), no_index) {
+        slots_.resize(mesh.corners.size());
+        for (std::uint32_t i = 0; i < sides.size(); ++i) slots_[sides[i].slot] = i;
+        for (std::size_t i = 0; i < sides.size();) {
+            const std::size_t end = end_of_edge(sides, i);
+            if (end - i == 2) {
+                mates_[i] = static_cast<std::uint32_t>(i + 1);
+                mates_[i + 1] = static_cast<std::uint32_t>(i);
+            }
+            i = end;
+        }
+    }
+    /// The unit normal, as if the polygons on the way had the orientation of the side's own.
+    Point3 normal(std::size_t i) const {
+        double sign = 1.0;
+        for (int step = 0; step < 8; ++step) {
+            const PolygonSide& side = sides_[i];
+            const std::uint32_t begin = mesh_.offsets[side.polygon];
+            if (mesh_.offsets[side.polygon + 1] - begin != 3) break;
+            const std::size_t next = slots_[begin + (side.slot - begin + 1) % 3],
+                              last = slots_[begin + (side.slot - begin + 2) % 3];
+            if (height(i, next, last) >= least_) break;
+            const std::size_t out = length(next) >= length(last) ? next : last;
+            if (mates_[out] == no_index) break;
+            i = mates_[out];
+            if (sides_[out].is_reversed == sides_[i].is_reversed) sign = -sign;
+        }
+        return sign * unit_normal(mesh_, sides_[i].polygon);
+    }
+
+private:
+    const Point3& low(std::size_t i) const { return mesh_.positions[sides_[i].low]; }
+    const Point3& high(std::size_t i) const { return mesh_.positions[sides_[i].high]; }
+    double length(std::size_t i) const { return distance(low(i), high(i)); }
+    /// Over the longest of a triangle's sides.
+    double height(std::size_t i, std::size_t next, std::size_t last) const {
+        const double longest = std::max({length(i), length(next), length(last)});
+        return longest > 0.0 ? norm(cross(high(i) - low(i), high(next) - low(next))) / longest : 0.0;
+    }
+
+    const PolygonMesh& mesh_;
+    const std::vector<PolygonSide>& sides_;
+    double least_;
+    std::vector<std::uint32_t> mates_, slots_;
+};
+
 std::vector<MarkedEdge> mark_edges(const PolygonMesh& mesh, const SurfaceCheckOptions& options) {
     std::set<std::pair<std::uint32_t, std::uint32_t>> tagged;
     for (const Edge& edge : options.features) tagged.insert(std::minmax(index_of(edge[0]), index_of(edge[1])));
     const std::vector<PolygonSide> sides = sort_sides(mesh);
     const double limit = std::cos(options.feature_angle_radians);
+    const BeyondSlivers beyond(mesh, sides);
     std::vector<MarkedEdge> marked;
     for (std::size_t i = 0; i < sides.size();) {
         const std::size_t end = end_of_edge(sides, i);
@@ -73,9 +135,13 @@ std::vector<MarkedEdge> mark_edges(const PolygonMesh& mesh, const SurfaceCheckOp
         } else if (tagged.count({side.low, side.high}) > 0) {
             mark = Mark::tagged;
         } else {
-            const Point3 n = unit_normal(mesh, side.polygon), m = unit_normal(mesh, sides[i + 1].polygon);
             const double sign = side.is_reversed == sides[i + 1].is_reversed ? -1.0 : 1.0;
-            if (dot(n, n) > 0.0 && dot(m, m) > 0.0 && sign * dot(n, m) < limit) mark = Mark::angle;
+            const auto is_sharp = [&](const Point3& n, const Point3& m) {
+                return dot(n, n) > 0.0 && dot(m, m) > 0.0 && sign * dot(n, m) < limit;
+            };
+            if (is_sharp(unit_normal(mesh, side.polygon), unit_normal(mesh, sides[i + 1].polygon)) &&
+                is_sharp(beyond.normal(i), beyond.normal(i + 1)))
+                mark = Mark::angle;
         }
         marked.push_back({side.low, side.high, mark, distance(mesh.positions[side.low], mesh.positions[side.high])});
         i = end;
@@ -87,24 +153,18 @@ std::vector<MarkedEdge> mark_edges(const PolygonMesh& mesh, const SurfaceCheckOp
 void forget_noise(const PolygonMesh& mesh, std::vector<MarkedEdge>& edges) {
     core::UnionFind groups(mesh.positions.size());
     double mean = 0.0;
-    Point3 low = mesh.positions.front(), high = low;
     std::vector<double> lengths(mesh.positions.size(), 0.0);
     std::vector<bool> is_held(mesh.positions.size(), false);
     for (const MarkedEdge& edge : edges) {
         mean += edge.length / static_cast<double>(edges.size());
         if (edge.mark != Mark::none) groups.unite(edge.low, edge.high);
-        for (const std::uint32_t v : {edge.low, edge.high}) {
-            const Point3& p = mesh.positions[v];
-            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-        }
     }
     for (const MarkedEdge& edge : edges) {
         if (edge.mark == Mark::none) continue;
         lengths[groups.find(edge.low)] += edge.length;
         if (edge.mark != Mark::angle) is_held[groups.find(edge.low)] = true;
     }
-    const double least = std::min(0.03 * distance(low, high), 12.0 * mean);
+    const double least = std::min(0.03 * diagonal_of(mesh), 12.0 * mean);
     for (MarkedEdge& edge : edges) {
         if (edge.mark != Mark::angle) continue;
         const std::uint32_t group = groups.find(edge.low);
