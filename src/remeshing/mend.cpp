@@ -189,6 +189,12 @@ private:
         report.split_quads = damage.split;
         std::vector<Index> broken = damage.polygons;
         add_missed_creases(broken);
+        if (broken.empty() && !regions_.empty()) {
+            // What is allowed has shrunk with what has become exact.
+            is_strict_ = true;
+            reach_ = 0.0;
+            add_missed_creases(broken);
+        }
         if (rule_.error > 0.0) add_far(broken);
         std::sort(broken.begin(), broken.end());
         broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
@@ -239,7 +245,7 @@ private:
     }
 
     /// Creases and minor corners that nothing of the result is near: the polygons below them.
-    void add_missed_creases(std::vector<Index>& broken) const {
+    void add_missed_creases(std::vector<Index>& broken) {
         if (mesh_.minor_edges.empty() && mesh_.minor_corners.empty() && mesh_.curves.empty()) return;
         std::vector<Triangle> edges, vertices, filled;
         const auto id = [](Index v) { return VertexId{v}; };
@@ -259,10 +265,15 @@ private:
         }
         const core::TriangleTree edge_tree(result_.points, edges), vertex_tree(result_.points, vertices),
             surface(result_.points, filled);
-        const double reach =
-            rule_.reach > 0.0 ? rule_.reach : std::max(largest_distance(surface, triangles), 1e-6 * judge_.diagonal);
+        // What was near enough at first stays near enough, or each region that becomes exact would condemn the next
+        // one.
+        if (reach_ == 0.0)
+            reach_ = rule_.reach > 0.0 ? rule_.reach
+                                       : std::max(largest_distance(surface, triangles), 1e-6 * judge_.diagonal);
+        // Samples find less than the bound that the check goes by: at first a quarter is left for that.
+        const double square = (rule_.reach > 0.0 || is_strict_ ? 0.8 : 1.5625) * reach_ * reach_;
         const auto demand = [&](const core::TriangleTree& tree, const Point3& p) {
-            if (tree.find_nearest(p).squared_distance > 0.8 * reach * reach)
+            if (tree.find_nearest(p).squared_distance > square)
                 broken.push_back(polygon_of[surface.find_nearest(p).triangle]);
         };
         for (const Index v : mesh_.minor_corners) demand(vertex_tree, mesh_.points[v]);
@@ -326,6 +337,8 @@ private:
     const WorkMesh& mesh_;
     const Judge& judge_;
     const MendingRule& rule_;
+    bool is_strict_ = false;
+    double reach_ = 0.0;  // how far a crease may be from the nearest edge; 0: not known yet
     const CoarseMesh base_;
     CoarseMesh& out_;
     const RunControl& control_;
