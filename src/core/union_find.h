@@ -15,6 +15,8 @@ public:
         while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
         return i;
     }
+    /// Whether i stands for its set; may be asked by several threads at once.
+    bool is_leader(std::uint32_t i) const { return parents_[i] == i; }
     /// Returns whether the two were in different sets.
     bool unite(std::uint32_t a, std::uint32_t b) {
         a = find(a);

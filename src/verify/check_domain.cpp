@@ -18,10 +18,10 @@
 // is that K ends where it may: each boundary face is a constraint triangle or has no vertex beyond its plane (here),
 // and the bounded components of the rest of space are regions that a hole point lies in (check_regions).
 #include <algorithm>
-#include <numeric>
 
+#include "core/union_find.h"
 #include "verify/parallel.h"
-#include "verify/subject.h"
+#include "verify/shells.h"
 
 namespace certa::verify {
 namespace {
@@ -96,11 +96,6 @@ void join_boundary(const Subject& subject, Domain& domain, Findings& findings) {
     }
 }
 
-std::uint32_t find_leader(std::vector<std::uint32_t>& leaders, std::uint32_t i) {
-    while (leaders[i] != i) i = leaders[i] = leaders[leaders[i]];
-    return i;
-}
-
 /// The vertex of `face` that is not one of `other`'s; they share an edge.
 std::uint32_t far_corner(const std::array<std::uint32_t, 3>& face, const std::array<std::uint32_t, 3>& other) {
     for (const std::uint32_t v : face) {
@@ -112,8 +107,7 @@ std::uint32_t far_corner(const std::array<std::uint32_t, 3>& face, const std::ar
 /// Fills on_hull.
 void find_hull(const Subject& subject, Domain& domain) {
     const std::size_t count = domain.boundary.size();
-    std::vector<std::uint32_t> leaders(count);
-    std::iota(leaders.begin(), leaders.end(), 0u);
+    core::UnionFind clusters(count);
     domain.on_hull.assign(count, 1);
     for (const auto& [i, k] : domain.joints) {
         const auto f = outward_face(subject.mesh, domain.boundary[i]),
@@ -121,21 +115,19 @@ void find_hull(const Subject& subject, Domain& domain) {
         const int side =
             orientation(subject.at(f[0]), subject.at(f[1]), subject.at(f[2]), subject.at(far_corner(g, f)));
         if (side > 0) domain.on_hull[i] = domain.on_hull[k] = 0;
-        if (side == 0)
-            leaders[std::max(find_leader(leaders, i), find_leader(leaders, k))] =
-                std::min(find_leader(leaders, i), find_leader(leaders, k));
+        if (side == 0) clusters.unite(i, k);
     }
     for (std::uint32_t i = 0; i < count; ++i) {
-        if (!domain.on_hull[i]) domain.on_hull[find_leader(leaders, i)] = 0;
+        if (!domain.on_hull[i]) domain.on_hull[clusters.find(i)] = 0;
     }
     Findings none;
     for_each_item(count, subject.control, none, [&](std::size_t i, Findings&) {
-        if (leaders[i] != i || !domain.on_hull[i]) return;
+        if (!clusters.is_leader(static_cast<std::uint32_t>(i)) || !domain.on_hull[i]) return;
         const auto f = outward_face(subject.mesh, domain.boundary[i]);
         subject.tree.visit(QuadricRegion::beyond(subject.at(f[0]), subject.at(f[1]), subject.at(f[2])), f, false,
                            [&](std::uint32_t, int) { return (domain.on_hull[i] = 0) != 0; });
     });
-    for (std::uint32_t i = 0; i < count; ++i) domain.on_hull[i] = domain.on_hull[find_leader(leaders, i)];
+    for (std::uint32_t i = 0; i < count; ++i) domain.on_hull[i] = domain.on_hull[clusters.find(i)];
 }
 
 /// Whether the direction from v to the middle of the face of t opposite to v lies in the cone of `other` at v, or on
@@ -215,6 +207,7 @@ Domain check_domain(const Subject& subject, Findings& findings) {
     const bool all_on_hull = std::find(domain.on_hull.begin(), domain.on_hull.end(), 0) == domain.on_hull.end();
     const bool usable = domain.matched && findings.count(Promise::well_formed) == 0 && all_used;
     domain.full_hull = usable && all_on_hull && covers_once(subject, findings);
+    if (!domain.full_hull) domain.shells = collect_shells(subject, domain);
     domain.embedded = domain.full_hull || (usable && !all_on_hull && is_embedded(subject, domain));
     return domain;
 }

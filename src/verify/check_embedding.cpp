@@ -68,7 +68,7 @@ std::uint32_t find_own(const std::vector<std::uint32_t>& of, const std::vector<s
 
 /// Whether n is 0 just outside of every shell.
 bool is_outside_empty(const Subject& subject, const Domain& domain) {
-    const std::vector<Shell> shells = collect_shells(subject, domain);
+    const std::vector<Shell>& shells = domain.shells;
     const auto vertices = collect_vertices(subject, domain, shells);
     double pairs = 0.0;
     for (std::size_t s = 0; s < shells.size(); ++s) {

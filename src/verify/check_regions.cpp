@@ -40,7 +40,7 @@ std::vector<std::uint8_t> find_hollow(const Subject& subject, const Domain& doma
 
 /// Returns the number of regions that are left out.
 std::size_t check_shells(const Subject& subject, const Domain& domain, Findings& findings) {
-    const std::vector<Shell> shells = collect_shells(subject, domain);
+    const std::vector<Shell>& shells = domain.shells;
     const std::vector<std::uint8_t> hollow = find_hollow(subject, domain, shells);
     for (std::size_t s = 0; s < shells.size(); ++s) {
         const Point3 place = face_points(subject, domain.boundary[shells[s].faces[0]])[0];

@@ -287,21 +287,7 @@ bool Enclosures::misses_zero(const BoxOfDoubles& box) {
 bool Enclosures::on_parts(const BoxOfDoubles& box, int axis, int sign, int depth) {
     if (directly(box, axis, sign)) return true;
     if (depth == deepest) return false;
-    for (unsigned part = 0; part < 8; ++part) {
-        BoxOfDoubles child = box;
-        bool repeated = false;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const double middle = box.low[i] / 2 + box.high[i] / 2;
-            // A side without inside is not cut.
-            if (!(box.low[i] < middle && middle < box.high[i])) {
-                repeated = repeated || ((part >> i) & 1u) != 0;
-                continue;
-            }
-            ((part >> i) & 1u ? child.low : child.high)[i] = middle;
-        }
-        if (!repeated && !on_parts(child, axis, sign, depth + 1)) return false;
-    }
-    return true;
+    return holds_on_parts(box, [&](const BoxOfDoubles& part) { return on_parts(part, axis, sign, depth + 1); });
 }
 
 bool Enclosures::proves_sign_on_triangle(const TriangleOfBoxes& t, int sign,

@@ -75,6 +75,26 @@ struct BoxOfDoubles {
     std::array<double, 3> low, high;
 };
 
+/// Whether visit(part) holds for each of the eight parts of a box (fewer where a side without inside is not cut), up to
+/// the first for which it does not.
+template <class Visit>
+bool holds_on_parts(const BoxOfDoubles& box, const Visit& visit) {
+    for (unsigned part = 0; part < 8; ++part) {
+        BoxOfDoubles child = box;
+        bool repeated = false;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const double middle = box.low[i] / 2 + box.high[i] / 2;
+            if (!(box.low[i] < middle && middle < box.high[i])) {
+                repeated = repeated || ((part >> i) & 1u) != 0;
+                continue;
+            }
+            ((part >> i) & 1u ? child.low : child.high)[i] = middle;
+        }
+        if (!repeated && !visit(child)) return false;
+    }
+    return true;
+}
+
 class QuickEnclosures;
 
 /// One thread's enclosures of one function: value and gradient over boxes, with 100 bits; in doubles where these

@@ -302,21 +302,7 @@ bool QuickEnclosures::by_second_order(std::array<Span, 3> place, const std::arra
 bool QuickEnclosures::on_parts(const BoxOfDoubles& box, int axis, int sign, int depth) {
     if (directly(box, axis, sign)) return true;
     if (depth == 6) return false;
-    for (unsigned part = 0; part < 8; ++part) {
-        BoxOfDoubles child = box;
-        bool repeated = false;
-        for (std::size_t i = 0; i < 3; ++i) {
-            const double middle = box.low[i] / 2 + box.high[i] / 2;
-            // A side without inside is not cut.
-            if (!(box.low[i] < middle && middle < box.high[i])) {
-                repeated = repeated || ((part >> i) & 1u) != 0;
-                continue;
-            }
-            ((part >> i) & 1u ? child.low : child.high)[i] = middle;
-        }
-        if (!repeated && !on_parts(child, axis, sign, depth + 1)) return false;
-    }
-    return true;
+    return holds_on_parts(box, [&](const BoxOfDoubles& part) { return on_parts(part, axis, sign, depth + 1); });
 }
 
 }  // namespace certa::verify

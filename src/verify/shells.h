@@ -5,12 +5,6 @@
 
 namespace certa::verify {
 
-struct Shell {
-    std::vector<std::uint32_t> faces;  ///< positions in Domain::boundary
-    int sign = 0;                      ///< of its volume: -1 where the mesh is around it
-    Point3 low, high;
-};
-
 /// Corners of a face, counter-clockwise from outside its tetrahedron.
 std::array<Point3, 3> face_points(const Subject& subject, HalfFace h);
 std::vector<Shell> collect_shells(const Subject& subject, const Domain& domain);

@@ -47,6 +47,13 @@ struct Subject {
     std::size_t input_count() const { return complex.positions.size(); }
 };
 
+/// A closed piece of the boundary of the mesh, faces being joined across the unmeshed side of their common edges.
+struct Shell {
+    std::vector<std::uint32_t> faces;  ///< positions in Domain::boundary
+    int sign = 0;                      ///< of its volume: -1 where the mesh is around it
+    Point3 low, high;
+};
+
 /// What is known about the space that the tetrahedra fill.
 struct Domain {
     bool matched = false;            ///< faces are shared by at most two tetrahedra, from both sides; all are positive
@@ -57,6 +64,7 @@ struct Domain {
     std::vector<std::uint8_t> on_hull;  ///< per entry of `boundary`: no vertex lies beyond its plane
     /// Pairs of entries of `boundary` that share an edge and are neighbours across the unmeshed side of it.
     std::vector<std::array<std::uint32_t, 2>> joints;
+    std::vector<Shell> shells;  ///< unless full_hull
 };
 
 // The stages, in the order in which they run.
