@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Every file of the models folder: meshed and verified within the recorded size, or refused for the recorded reasons.
 
-    models_test.py CERTA [quick|long]         checks expected.tsv against what CERTA does now
-    models_test.py CERTA record [OPTIONS...]  prints the rows of all files as CERTA handles them now
+    models_test.py CERTA [quick|long [SECONDS]]  checks expected.tsv against what CERTA does now, SECONDS a file at most
+    models_test.py CERTA record [OPTIONS...]     prints the rows of all files as CERTA handles them now
 
 expected.tsv, one row per file and options:
   outcome   meshed (and verified by the independent checker), refused, unreadable
@@ -27,7 +27,7 @@ MODELS = os.environ.get("CERTA_MODELS", "")
 FOLDERS = ("plc", "plc_eco", "cad", "scan", "thingi", "defects")
 COLUMNS = ("file", "options", "run", "outcome", "vertices", "defects", "why")
 QUICK_FACETS, QUICK_VERTICES = 8200, 30_000  # what the quick run covers: input's facets, result's vertices
-SECONDS = 600
+SECONDS = int(sys.argv[3]) if len(sys.argv) > 3 and sys.argv[2] != "record" else 600  # for one file
 
 
 def run(certa, file, options):
