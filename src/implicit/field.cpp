@@ -62,10 +62,13 @@ Interval narrow_by_second_order(const std::array<Interval, 6>& hessian, const Je
     return interval::intersect(value, interval::intersect(first_order(middle.value, slopes, center), second));
 }
 
-/// Notes the sign of f and the surest slope along the given axes; returns whether nothing is left to find.
+/// Notes the sign of f and the surest slope along the given axes; returns whether nothing is left to find. The theorem
+/// is about C1 functions: a slope counts only where every partial derivative is proved to exist.
 bool note(const Interval& value, const std::array<Interval, 3>& slopes, unsigned axes, Certainty& found) {
     if (found.sign == 0) found.sign = static_cast<std::int8_t>(interval::sign_of(value));
-    if (found.slope == 0) {
+    const bool is_smooth =
+        interval::is_defined(slopes[0]) && interval::is_defined(slopes[1]) && interval::is_defined(slopes[2]);
+    if (found.slope == 0 && is_smooth) {
         double best = 0;
         for (int a = 0; a < 3; ++a) {
             if (((axes >> a) & 1u) == 0) continue;

@@ -202,6 +202,8 @@ INSTANTIATE_TEST_SUITE_P(
         Touching{"plane_in_a_face", "x-1", {-2, -2, -2}, {1, 2, 2}, Reason::tangent_to_box, {1, any, any}},
         Touching{"plane_along_an_edge", "x+y-2", {-2, -2, -2}, {1, 1, 2}, Reason::tangent_to_box, {1, 1, any}},
         Touching{"plane_through_a_corner", "x+y+z+3", {-1, -1, -1}, {1, 1, 1}, Reason::tangent_to_box, {-1, -1, -1}},
+        // Defined and continuous up to x = -1, where the derivative is not.
+        Touching{"root_from_a_face", "sqrt(x+1)-z", {-1, -1, -9}, {1, 1, 9}, Reason::singular, {-1, any, 0}},
         Touching{"cone_with_its_tip_in_a_face",
                  "x^2+y^2-z^2",
                  {-1.2, -1.2, 0},

@@ -1,0 +1,176 @@
+// What the checker's enclosures in doubles rest on, one test per protection; each fails when its protection is taken
+// away (tried by hand).
+//   results moved outward            RoundingNeverDecides
+//   MPFI's bounds rounded outward    FunctionsNeverDecide, ConstantsAreTheExactDecimals
+//   poles                            NothingIsProvedAcrossPoles (domains of functions: MPFI refuses them, too)
+//   a slope needs all derivatives    SlopesNeedADifferentiableFunction
+//   infinities prove nothing         OverflowProvesNothing (guarded at each operation and at each step)
+//   rounding to nearest              OtherRoundingModesProveNothing
+//
+// How the first two work: z is the double that an operation op(x, y) rounds to, w is smaller than the error of that
+// rounding and has the other sign. Then f = (op(x, y) - z) + w has in doubles, exactly, the sign of w, and in truth the
+// other one, which MPFR knows. An enclosure whose bounds are not moved outward claims the wrong sign.
+#include <gtest/gtest.h>
+#include <mpfr.h>
+
+#include <cfenv>
+#include <cmath>
+#include <functional>
+#include <string>
+
+#include "core/random.h"
+#include "verify/implicit_function.h"
+#include "verify/quick_enclosures.h"
+
+namespace certa::verify {
+namespace {
+
+constexpr int value = -1;  // what `proves_directly` calls the function itself, beside its derivatives 0, 1, 2
+
+BoxOfDoubles point(double x, double y, double z) { return {{x, y, z}, {x, y, z}}; }
+
+/// op(x, y) - z in 400 bits, rounded to a double.
+using Exact = std::function<void(mpfr_ptr result, mpfr_srcptr x, mpfr_srcptr y)>;
+double error_of(const Exact& op, double x, double y, double z) {
+    mpfr_t a, b, c;
+    mpfr_inits2(400, a, b, c, static_cast<mpfr_ptr>(nullptr));
+    mpfr_set_d(a, x, MPFR_RNDN);
+    mpfr_set_d(b, y, MPFR_RNDN);
+    op(c, a, b);
+    mpfr_sub_d(c, c, z, MPFR_RNDN);
+    const double error = mpfr_get_d(c, MPFR_RNDN);
+    mpfr_clears(a, b, c, static_cast<mpfr_ptr>(nullptr));
+    return error;
+}
+double rounded(const Exact& op, double x, double y) { return error_of(op, x, y, 0); }
+
+struct Operation {
+    const char* text;  ///< of x and y
+    Exact exact;
+    double low = -4, high = 4;
+};
+
+/// How often doubles, rounded to nearest, would have claimed the wrong sign; never may the enclosure.
+int count_traps(const Operation& operation) {
+    core::Random random(17);
+    int traps = 0;
+    for (int i = 0; i < 200; ++i) {
+        const double x = random.uniform(operation.low, operation.high), y = random.uniform(0.5, 4);
+        const double z = rounded(operation.exact, x, y), error = error_of(operation.exact, x, y, z);
+        if (error == 0 || std::fabs(error) < 1e-250) continue;
+        ++traps;
+        const int truth = error > 0 ? 1 : -1;
+        // w = -error / 2, as a constant: z, y and x are taken.
+        char w[64];
+        std::snprintf(w, sizeof w, "%.17e", -error / 2);
+        const ImplicitFunction function("(" + std::string(operation.text) + " - z) + (" + w + ")");
+        QuickEnclosures quick(function);
+        EXPECT_FALSE(quick.proves_directly(point(x, y, z), value, -truth)) << operation.text << " at " << x << " " << y;
+        // With a thousand times the rounding on the other side of z there is something to prove.
+        const double far = z - truth * 1000 * std::fabs(z) * 0x1p-52;
+        const ImplicitFunction plain(std::string(operation.text) + " - z");
+        QuickEnclosures able(plain);
+        EXPECT_TRUE(able.proves_directly(point(x, y, far), value, truth)) << operation.text << " at " << x << " " << y;
+    }
+    return traps;
+}
+
+TEST(QuickEnclosures, RoundingNeverDecides) {
+    const auto operations = std::vector<Operation>{
+        {"(x+y)", [](auto r, auto x, auto y) { mpfr_add(r, x, y, MPFR_RNDN); }},
+        {"(x-y)", [](auto r, auto x, auto y) { mpfr_sub(r, x, y, MPFR_RNDN); }},
+        {"(x*y)", [](auto r, auto x, auto y) { mpfr_mul(r, x, y, MPFR_RNDN); }},
+        {"(x/y)", [](auto r, auto x, auto y) { mpfr_div(r, x, y, MPFR_RNDN); }},
+        {"x^2", [](auto r, auto x, auto) { mpfr_sqr(r, x, MPFR_RNDN); }},
+        {"y^-2", [](auto r, auto, auto y) { mpfr_pow_si(r, y, -2, MPFR_RNDN); }},
+        {"sqrt(y)", [](auto r, auto, auto y) { mpfr_sqrt(r, y, MPFR_RNDN); }},
+    };
+    for (const Operation& operation : operations) EXPECT_GT(count_traps(operation), 30) << operation.text;
+}
+
+TEST(QuickEnclosures, FunctionsNeverDecide) {
+    const auto operations = std::vector<Operation>{
+        {"exp(x)", [](auto r, auto x, auto) { mpfr_exp(r, x, MPFR_RNDN); }},
+        {"log(y)", [](auto r, auto, auto y) { mpfr_log(r, y, MPFR_RNDN); }},
+        {"sin(x)", [](auto r, auto x, auto) { mpfr_sin(r, x, MPFR_RNDN); }},
+        {"cos(x)", [](auto r, auto x, auto) { mpfr_cos(r, x, MPFR_RNDN); }},
+        {"tan(x)", [](auto r, auto x, auto) { mpfr_tan(r, x, MPFR_RNDN); }, -1.5, 1.5},
+        {"atan(x)", [](auto r, auto x, auto) { mpfr_atan(r, x, MPFR_RNDN); }},
+        {"sinh(x)", [](auto r, auto x, auto) { mpfr_sinh(r, x, MPFR_RNDN); }},
+        {"cosh(x)", [](auto r, auto x, auto) { mpfr_cosh(r, x, MPFR_RNDN); }},
+        {"tanh(x)", [](auto r, auto x, auto) { mpfr_tanh(r, x, MPFR_RNDN); }},
+        {"y^1.5",
+         [](auto r, auto, auto y) {
+             mpfr_sqrt(r, y, MPFR_RNDN);
+             mpfr_pow_ui(r, r, 3, MPFR_RNDN);
+         }},
+    };
+    for (const Operation& operation : operations) EXPECT_GT(count_traps(operation), 30) << operation.text;
+}
+
+TEST(QuickEnclosures, ConstantsAreTheExactDecimals) {
+    // The double nearest to 0.1 is above it by 5.55e-18, the one nearest to pi below by 1.22e-16.
+    const ImplicitFunction tenth("(0.1 - z) + 4e-18"), circle("(pi - z) - 1e-16");
+    QuickEnclosures a(tenth), b(circle);
+    EXPECT_FALSE(a.proves_directly(point(0, 0, 0.1), value, 1));
+    EXPECT_FALSE(b.proves_directly(point(0, 0, 0x1.921fb54442d18p+1), value, -1));
+}
+
+// Boxes that hold a pole or leave the domain: the corners alone would say a sign.
+TEST(QuickEnclosures, NothingIsProvedAcrossPoles) {
+    const BoxOfDoubles box{{-1, -1, -1}, {1, 1.5, 1.25}};
+    for (const char* text : {"1/x + 5", "x^-1 + 5", "x^-3 + 5", "tan(2*x) + 9", "5 + log(x)", "5 + sqrt(x)",
+                             "5 + x^0.3", "5 + 0/x", "5 + 0*log(y)", "5 + (1/z)^0", "3 + x/x"}) {
+        const ImplicitFunction function(text);
+        QuickEnclosures quick(function);
+        Enclosures careful(function);
+        for (const int sign : {-1, 1}) {
+            EXPECT_FALSE(quick.proves(box, value, sign)) << text;
+            EXPECT_FALSE(careful.proves_sign(box, sign)) << text;
+            for (int axis = 0; axis < 3; ++axis) {
+                EXPECT_FALSE(quick.proves(box, axis, sign)) << text;
+                EXPECT_FALSE(careful.proves_slope(box, axis, sign)) << text;
+            }
+        }
+    }
+}
+
+// The derivative by y is 1 everywhere, but the function is not C1 where x is 0.
+TEST(QuickEnclosures, SlopesNeedADifferentiableFunction) {
+    for (const char* text : {"sqrt(x^2) + y", "sqrt(x + 1) + y", "(x^2 + z^2)^0.5 + y", "0*sqrt(x^2) + y"}) {
+        const ImplicitFunction function(text);
+        QuickEnclosures quick(function);
+        Enclosures careful(function);
+        const BoxOfDoubles across{{-1, 0, -1}, {1, 1, 1}}, beside{{0.5, 0, 0.5}, {1, 1, 1}};
+        EXPECT_FALSE(quick.proves(across, 1, 1)) << text;
+        EXPECT_FALSE(careful.proves_slope(across, 1, 1)) << text;
+        EXPECT_TRUE(quick.proves(beside, 1, 1)) << text;
+        EXPECT_TRUE(careful.proves_slope(beside, 1, 1)) << text;
+    }
+}
+
+TEST(QuickEnclosures, OverflowProvesNothing) {
+    const BoxOfDoubles box{{1, 1, 1}, {2, 2, 2}};
+    for (const char* text : {"x*1e200*1e200 - x*1e200*1e200 + 1", "exp(exp(9*y)) - exp(exp(9*y)) - 1",
+                             "1e300*z*1e300/(1e300*z*1e300) - 2"}) {
+        const ImplicitFunction function(text);
+        QuickEnclosures quick(function);
+        for (const int sign : {-1, 1}) EXPECT_FALSE(quick.proves(box, value, sign)) << text;
+    }
+}
+
+TEST(QuickEnclosures, OtherRoundingModesProveNothing) {
+    const ImplicitFunction function("x + 10");
+    const BoxOfDoubles box{{1, 1, 1}, {2, 2, 2}};
+    EXPECT_TRUE(QuickEnclosures(function).proves(box, value, 1));
+    for (const int mode : {FE_UPWARD, FE_DOWNWARD, FE_TOWARDZERO}) {
+        std::fesetround(mode);
+        QuickEnclosures quick(function);
+        const bool claimed = quick.proves(box, value, 1);
+        std::fesetround(FE_TONEAREST);
+        EXPECT_FALSE(claimed) << mode;
+    }
+}
+
+}  // namespace
+}  // namespace certa::verify
