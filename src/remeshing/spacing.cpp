@@ -16,11 +16,12 @@ void limit_growth(const WorkMesh& mesh, std::vector<double>& size, double growth
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
     for (Index w = 0; w < size.size(); ++w) queue.push({size[w], w});
     while (!queue.empty()) {
-        const auto [value, w] = queue.top();
+        const Entry next = queue.top();
+        const Index w = next.second;
         queue.pop();
-        if (value > size[w]) continue;
+        if (next.first > size[w]) continue;
         const auto relax = [&](Index other, Index edge) {
-            const double reached = value + growth * mesh.lengths[edge];
+            const double reached = size[w] + growth * mesh.lengths[edge];
             if (reached < size[other]) {
                 size[other] = reached;
                 queue.push({reached, other});
