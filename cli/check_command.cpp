@@ -1,11 +1,9 @@
 // `certa check FILE [--against INPUT]`: decides what `conform` promises, on any file; surface meshes are passed on.
-// Without INPUT there is nothing to conform to: the mesh's own constraint triangles and edges stand in for it, and what
-// is decided is the Delaunay property and the form of the mesh.
+// Without INPUT there is nothing to conform to: what is decided is the Delaunay property and the form of the mesh.
 #include <certa/conforming.h>
 
 #include <algorithm>
 #include <memory>
-#include <numeric>
 
 #include "check_surface_command.h"
 #include "commands.h"
@@ -26,30 +24,6 @@ struct CheckArguments {
     std::string certificate;  // of an implicit surface: --against is a function then
     std::vector<double> box;  // of a function
 };
-
-/// The complex of the mesh's own constraints: every triangle a facet, every edge a segment; `mesh` is relabelled so.
-PiecewiseLinearComplex own_complex(TetMesh& mesh) {
-    PiecewiseLinearComplex complex;
-    complex.positions = mesh.positions;
-    complex.segments = mesh.edges;
-    for (const Triangle& triangle : mesh.triangles) add_facet(complex, {{triangle.begin(), triangle.end()}});
-    mesh.vertex_sources.clear();
-    mesh.triangle_facets.resize(mesh.triangles.size());
-    mesh.edge_segments.resize(mesh.edges.size());
-    for (std::uint32_t i = 0; i < mesh.triangles.size(); ++i) mesh.triangle_facets[i] = FacetId{i};
-    for (std::uint32_t i = 0; i < mesh.edges.size(); ++i) mesh.edge_segments[i] = SegmentId{i};
-    return complex;
-}
-
-bool is_decided_alone(const Violation& violation) {
-    return violation.promise == "delaunay" || violation.promise == "well-formed" || violation.promise == "gabriel";
-}
-
-/// Keeps what can be said without an input. At most 100 violations of each promise were kept, so the count is of those.
-void keep_what_is_decided_alone(ConformingCheck& check) {
-    std::erase_if(check.violations, [](const Violation& v) { return !is_decided_alone(v); });
-    check.violation_count = check.violations.size();
-}
 
 void say_violations(Session& session, const ConformingCheck& check) {
     const std::size_t shown =
@@ -87,15 +61,15 @@ ExitCode run_check(Session& session, const CheckArguments& arguments) {
         throw UsageError(arguments.file.path +
                          " has no tetrahedra: a surface mesh is checked with --against and the surface that it stands "
                          "for; `certa info` describes surfaces and complexes");
-    TetMesh mesh = make_tet_mesh(document);
+    const TetMesh mesh = make_tet_mesh(document);
     const bool alone = !arguments.against.given();
-    const PiecewiseLinearComplex complex = alone ? own_complex(mesh) : read_against(session, arguments);
-    ConformingCheck check = session.timed("check", [&] {
+    const PiecewiseLinearComplex complex = alone ? PiecewiseLinearComplex{} : read_against(session, arguments);
+    const ConformingCheck check = session.timed("check", [&] {
         const GracefulScope graceful;
-        return check_conforming(mesh, complex, arguments.options, session.control());
+        return alone ? check_delaunay_mesh(mesh, arguments.options, session.control())
+                     : check_conforming(mesh, complex, arguments.options, session.control());
     });
     if (interrupt_flag()) return ExitCode::interrupted;
-    if (alone) keep_what_is_decided_alone(check);
     std::vector<std::string> promises{"well-formed", "delaunay"};
     if (!alone) promises.insert(promises.end(), {"conforming", "faithful", "labelled"});
     if (arguments.options.gabriel) promises.push_back("gabriel");

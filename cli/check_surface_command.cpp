@@ -2,6 +2,8 @@
 // Segments of INPUT are creases, whatever their angle.
 #include "check_surface_command.h"
 
+#include <certa/io.h>
+
 #include <algorithm>
 
 #include "interrupt.h"
@@ -10,31 +12,11 @@
 namespace certa::cli {
 namespace {
 
-Json to_json(const OneSidedDistance& d) {
-    return {{"mean", d.mean},
-            {"rms", d.rms},
-            {"largest", d.largest},
-            {"largest_place", cli::to_json(d.largest_place)},
-            {"bound", d.bound}};
-}
-
-Json to_json(const SurfaceShape& s) {
-    Json components = Json::array();
-    for (const ComponentShape& part : s.components)
-        components.push_back({{"genus", part.genus},
-                              {"boundary_loops", part.boundary_loops},
-                              {"euler_characteristic", part.euler_characteristic}});
-    return {{"vertices", s.vertices},
-            {"edges", s.edges},
-            {"polygons", s.polygons},
-            {"triangles", s.triangles},
-            {"quads", s.quads},
-            {"boundary_edges", s.boundary_edges},
-            {"boundary_loops", s.boundary_loops},
-            {"non_manifold_edges", s.non_manifold_edges},
-            {"non_manifold_vertices", s.non_manifold_vertices},
-            {"inconsistent_edges", s.inconsistent_edges},
-            {"components", components}};
+Json shape_to_json(const SurfaceShape& s) {
+    Json result = record_of(s);
+    result["components"] = Json::array();
+    for (const ComponentShape& part : s.components) result["components"].push_back(record_of(part));
+    return result;
 }
 
 std::string describe(const SurfaceShape& s) {
@@ -49,30 +31,11 @@ std::string describe(const SurfaceShape& s) {
 }  // namespace
 
 Json to_json(const SurfaceCheck& check) {
-    Json violations = Json::array();
-    for (const Violation& violation : check.violations)
-        violations.push_back({{"promise", violation.promise},
-                              {"elements", cli::to_json(violation.elements)},
-                              {"place", cli::to_json(violation.place)},
-                              {"message", violation.message}});
-    const CreaseCover& c = check.creases;
-    return {{"violation_count", check.violation_count},
-            {"violations", violations},
-            {"distance", cli::to_json(check.distance)},
-            {"mesh", to_json(check.mesh)},
-            {"input", to_json(check.input)},
-            {"creases",
-             {{"edges", c.edges},
-              {"corners", c.corners},
-              {"length", c.length},
-              {"mean_distance", c.mean_distance},
-              {"largest_distance", c.largest_distance},
-              {"largest_place", cli::to_json(c.largest_place)},
-              {"corner_distance", c.corner_distance}}},
-            {"folded_polygons", check.folded_polygons},
-            {"contacts", check.contacts},
-            {"possible_contacts", check.possible_contacts},
-            {"input_contacts", check.input_contacts}};
+    Json result{{"violation_count", check.violation_count}, {"violations", cli::to_json(check.violations)},
+                {"distance", cli::to_json(check.distance)}, {"mesh", shape_to_json(check.mesh)},
+                {"input", shape_to_json(check.input)},      {"creases", record_of(check.creases)}};
+    result.update(record_of(check));
+    return result;
 }
 
 namespace {
@@ -100,29 +63,20 @@ void say_findings(Session& session, const SurfaceCheck& check) {
 }  // namespace
 
 Json to_json(const SurfaceDistance& d) {
-    return {{"to_second", to_json(d.to_second)},
-            {"to_first", to_json(d.to_first)},
-            {"rms", d.rms},
-            {"hausdorff", d.hausdorff},
-            {"hausdorff_bound", d.hausdorff_bound},
-            {"diagonal", d.diagonal},
-            {"is_tight", d.is_tight}};
+    Json result{{"to_second", record_of(d.to_second)}, {"to_first", record_of(d.to_first)}};
+    result.update(record_of(d));
+    return result;
 }
 
+namespace {
+
 PolygonMesh polygons_of(const MeshDocument& document, const std::string& name) {
-    PolygonMesh mesh;
-    const PiecewiseLinearComplex& complex = document.complex;
-    mesh.positions = complex.positions;
-    for (std::size_t p = 0; p < complex.polygon_count(); ++p) {
-        const auto begin = complex.corners.begin() + complex.polygon_offsets[p],
-                   end = complex.corners.begin() + complex.polygon_offsets[p + 1];
-        if (end - begin < 3) continue;
-        mesh.corners.insert(mesh.corners.end(), begin, end);
-        mesh.offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
-    }
+    PolygonMesh mesh = make_polygon_mesh(document);
     if (mesh.offsets.size() == 1) throw UsageError(name + " has no polygons: there is no surface to check");
     return mesh;
 }
+
+}  // namespace
 
 ExitCode check_surface_mesh(Session& session, const MeshDocument& document, const MeshDocument& against,
                             SurfaceCheckOptions options) {

@@ -10,9 +10,6 @@ namespace certa::cli {
 ExitCode check_surface_mesh(Session& session, const MeshDocument& document, const MeshDocument& against,
                             SurfaceCheckOptions options);
 
-/// The polygons of a document, without isolated points and segments. Errors: UsageError where there are none.
-PolygonMesh polygons_of(const MeshDocument& document, const std::string& name);
-
 Json to_json(const SurfaceDistance& distance);
 Json to_json(const SurfaceCheck& check);
 

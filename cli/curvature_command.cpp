@@ -95,21 +95,6 @@ Json json_of(const ApproximationBound& b) {
     return json;
 }
 
-Json json_of(const CurvatureStatistics& s) {
-    return {{"vertices", s.vertices},
-            {"triangles", s.triangles},
-            {"edges", s.edges},
-            {"components", s.components},
-            {"border_edges", s.border_edges},
-            {"non_manifold_edges", s.non_manifold_edges},
-            {"non_manifold_vertices", s.non_manifold_vertices},
-            {"excluded_edges", s.excluded_edges},
-            {"unused_vertices", s.unused_vertices},
-            {"flat_triangles", s.flat_triangles},
-            {"repeated_vertices", s.repeated_vertices},
-            {"mean_edge_length", s.mean_edge_length}};
-}
-
 void warn_of(Session& session, const CurvatureStatistics& s) {
     if (s.excluded_edges > 0)
         session.warn(counted(s.excluded_edges, "edge is", "edges are") +
@@ -156,7 +141,7 @@ ExitCode measure_region(Session& session, const CurvatureArguments& arguments, c
     if (result.outcome == Outcome::cancelled) return ExitCode::interrupted;
     session.report()["region"]["text"] = arguments.region;
     session.report()["region"]["measures"] = json_of(result.measures);
-    session.report()["statistics"] = json_of(result.statistics);
+    session.report()["statistics"] = record_of(result.statistics);
     if (result.bound) session.report()["region"]["bound"] = json_of(*result.bound);
     warn_of(session, result.statistics);
     say_measures(session, result.measures);
@@ -201,7 +186,7 @@ void report_result(Session& session, const CurvatureResult& result) {
     Json& report = session.report();
     report["total"] = json_of(result.total);
     report["euler_characteristic"] = result.euler_characteristic;
-    report["statistics"] = json_of(result.statistics);
+    report["statistics"] = record_of(result.statistics);
     report["estimator"] = frontend::value_of(frontend::curvature_options()[6],
                                              CurvatureOptions{.estimator = result.statistics.estimator});
     if (result.statistics.radius > 0.0) report["radius"] = result.statistics.radius;

@@ -31,7 +31,4 @@ ExitCode check_implicit_mesh(Session& session, const MeshDocument& document, con
 ExitCode check_mesh_against_function(Session& session, const MeshDocument& document, const FunctionArgument& function,
                                      const std::vector<double>& box);
 
-/// Triangles of a document. Errors: UsageError where it has other polygons.
-TriangleMesh triangles_of(const MeshDocument& document);
-
 }  // namespace certa::cli

@@ -3,6 +3,7 @@
 // nothing is written.
 #include <certa/conforming.h>
 #include <certa/implicit.h>
+#include <certa/io.h>
 
 #include <algorithm>
 #include <array>
@@ -110,9 +111,7 @@ void report_result(Session& session, const ImplicitResult& result, bool clipped)
         components.push_back(entry);
     }
     report["components"] = components;
-    const ImplicitStatistics& s = result.statistics;
-    report["statistics"] = {{"cells", s.cells},       {"leaves", s.leaves}, {"open_leaves", s.open_leaves},
-                            {"clusters", s.clusters}, {"rounds", s.rounds}, {"tetrahedra", s.tetrahedra}};
+    report["statistics"] = record_of(result.statistics);
     Json obstacles = Json::array();
     for (const ImplicitObstacle& o : result.obstacles)
         obstacles.push_back({{"reason", name_of(o.reason)}, {"low", to_json(o.low)}, {"high", to_json(o.high)}});
@@ -183,8 +182,12 @@ void verify(Session& session, const ImplicitResult& result, const std::string& f
     });
     if (interrupt_flag()) return;
     session.report()["check"] = to_json(check);
-    if (!check.ok())
+    if (!check.ok()) {
+        // The report must not repeat a claim that did not stand.
+        session.report()["verdict"] = name_of(ImplicitVerdict::undecided);
+        session.report()["status"] = {{"type", "undecided"}, {"isotopy", "undecided"}};
         throw InternalError("the result failed its own check and was not written: " + check.violations.front());
+    }
     std::vector<std::string> promises = promises_of(check);
     if (check.hausdorff) promises.push_back("hausdorff");
     session.report()["proved"] = promises;
@@ -302,10 +305,23 @@ std::string read_text(const std::string& path) {
     return text;
 }
 
+namespace {
+
+/// A word with a dot before a letter, such as torus.txt: no expression has that.
+bool looks_like_a_file(const std::string& text) {
+    if (text.find_first_of(" \t\n()*+^=;,") != std::string::npos) return false;
+    const std::size_t dot = text.rfind('.');
+    return dot != std::string::npos && dot + 1 < text.size() &&
+           std::isalpha(static_cast<unsigned char>(text[dot + 1])) != 0 && text.substr(dot + 1, 1) != "e";
+}
+
+}  // namespace
+
 FunctionArgument::Source FunctionArgument::read() const {
     if (text == "-") return {"standard input", read_text(text)};
     std::error_code error;
     if (std::filesystem::is_regular_file(text, error)) return {text, read_text(text)};
+    if (looks_like_a_file(text)) throw IoError(text, 0, "no file of this name, and no expression either");
     return {"expression", text};
 }
 
@@ -316,25 +332,11 @@ Json to_json(const ImplicitCheck& check) {
             {"triangles_checked", check.triangles_checked}};
 }
 
-TriangleMesh triangles_of(const MeshDocument& document) {
-    TriangleMesh mesh;
-    mesh.positions = document.complex.positions;
-    for (std::size_t p = 0; p < document.complex.polygon_count(); ++p) {
-        const std::uint32_t first = document.complex.polygon_offsets[p];
-        if (document.complex.polygon_offsets[p + 1] - first != 3)
-            throw UsageError("polygon " + std::to_string(p + 1) +
-                             " of the mesh is no triangle: a certificate is for triangles");
-        const auto& corners = document.complex.corners;
-        mesh.triangles.push_back({corners[first], corners[first + 1], corners[first + 2]});
-    }
-    return mesh;
-}
-
 ExitCode check_implicit_mesh(Session& session, const MeshDocument& document, const FunctionArgument& function,
                              const std::string& certificate) {
     const FunctionArgument::Source source = function.read();
     parse_expression(source.text, source.name);  // for its message; the check reads the text by itself
-    const TriangleMesh mesh = triangles_of(document);
+    const TriangleMesh mesh = make_triangle_mesh(document);
     const std::string proof = read_text(certificate);
     const ImplicitCheck check = session.timed("check", [&] {
         const GracefulScope graceful;

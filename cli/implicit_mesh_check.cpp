@@ -1,5 +1,6 @@
 // `certa check MESH --against FUNCTION` without a certificate: certified, refuted, or undecided with the triangles.
 #include <certa/implicit_mesh.h>
+#include <certa/io.h>
 
 #include <algorithm>
 
@@ -14,20 +15,6 @@ namespace {
 
 std::string show(const Point3& p) {
     return "(" + frontend::text_of(p.x) + ", " + frontend::text_of(p.y) + ", " + frontend::text_of(p.z) + ")";
-}
-
-/// The box of a mesh, with a margin on each side that depends on no power of 2: grids of marching cubes are not aligned
-/// with the octree then.
-std::vector<double> box_around(const TriangleMesh& mesh) {
-    if (mesh.positions.empty()) throw UsageError("an empty mesh has no place: give the box with --box");
-    Point3 low = mesh.positions.front(), high = low;
-    for (const Point3& p : mesh.positions) {
-        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-    }
-    const double size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
-    return {low.x - 0.1537 * size,  low.y - 0.1619 * size,  low.z - 0.1471 * size,
-            high.x + 0.1723 * size, high.y + 0.1511 * size, high.z + 0.1673 * size};
 }
 
 std::string list_of(const std::vector<int>& genera) {
@@ -64,11 +51,13 @@ ExitCode check_mesh_against_function(Session& session, const MeshDocument& docum
                                      const std::vector<double>& box) {
     const FunctionArgument::Source source = function.read();
     const Expression expression = parse_expression(source.text, source.name);  // errors name the source
-    const TriangleMesh mesh = triangles_of(document);
-    const std::vector<double> b = box.empty() ? box_around(mesh) : box;
+    const TriangleMesh mesh = make_triangle_mesh(document);
+    if (mesh.positions.empty() && box.empty()) throw UsageError("an empty mesh has no place: give the box with --box");
+    std::array<Point3, 2> b = box.empty() ? find_box_around(mesh) : std::array<Point3, 2>{};
+    if (!box.empty()) b = {{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}}};
     const ImplicitMeshCheck check = session.timed("check", [&] {
         const GracefulScope graceful;
-        return check_mesh_against(mesh, source.text, {b[0], b[1], b[2]}, {b[3], b[4], b[5]}, {}, session.control());
+        return check_mesh_against(mesh, source.text, b[0], b[1], {}, session.control());
     });
     if (interrupt_flag()) return ExitCode::interrupted;
     report_check(session, check);

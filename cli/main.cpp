@@ -1,7 +1,12 @@
 // The command `certa`: parses arguments with CLI11, maps its outcomes to our exit codes, runs one subcommand.
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <numeric>
 #include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "build_info.h"
 #include "commands.h"
@@ -27,6 +32,56 @@ std::string invoked(const CLI::App& app) {
 int refuse_usage(const std::string& command, const std::string& message) {
     std::fprintf(stderr, "%s: %s\nSee '%s --help'.\n", command.c_str(), message.c_str(), command.c_str());
     return static_cast<int>(ExitCode::usage);
+}
+
+/// How many letters must be added, left out or changed to make one word of the other.
+std::size_t edits_between(std::string_view a, std::string_view b) {
+    std::vector<std::size_t> row(b.size() + 1);
+    std::iota(row.begin(), row.end(), std::size_t{0});
+    for (std::size_t i = 0; i < a.size(); ++i) {
+        std::size_t diagonal = std::exchange(row[0], i + 1);
+        for (std::size_t j = 0; j < b.size(); ++j) {
+            const std::size_t changed = diagonal + (a[i] != b[j]);
+            diagonal = row[j + 1];
+            row[j + 1] = std::min({changed, row[j] + 1, diagonal + 1});
+        }
+    }
+    return row[b.size()];
+}
+
+/// "; did you mean 'conform'?" where a name is that close.
+std::string suggestion(std::string_view word, const std::vector<std::string>& names) {
+    std::size_t best = 1 + word.size() / 3;
+    std::string nearest;
+    for (const std::string& name : names)
+        if (const std::size_t edits = edits_between(word, name); edits < best) best = edits, nearest = name;
+    return nearest.empty() ? "" : "; did you mean '" + nearest + "'?";
+}
+
+/// What is wrong with a command line that CLI11 refuses, in words for somebody who meant something else.
+std::string explain(const CLI::App& app, const CLI::ParseError& error, int argc, char** argv) {
+    const auto commands = app.get_subcommands();
+    if (commands.empty()) {
+        std::vector<std::string> names;
+        for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; }))
+            if (!command->get_group().empty()) names.push_back(command->get_name());
+        if (argc > 1 && argv[1][0] != '-')
+            return std::string("'") + argv[1] + "' is no command" + suggestion(argv[1], names);
+        return error.what();
+    }
+    std::string message = error.what();
+    if (dynamic_cast<const CLI::ExtrasError*>(&error) == nullptr &&
+        dynamic_cast<const CLI::RequiredError*>(&error) == nullptr)
+        return message;
+    std::vector<std::string> flags;
+    for (const CLI::Option* option : commands.front()->get_options())
+        for (const std::string& name : option->get_lnames()) flags.push_back("--" + name);
+    for (const std::string& extra : app.remaining(true)) {
+        if (extra.starts_with("--")) return message + suggestion(extra.substr(0, extra.find('=')), flags);
+        if (extra.starts_with("-") && extra != "-")
+            return message + "; what begins with '-' and is no option goes after --";
+    }
+    return message;
 }
 
 int run(int argc, char** argv) {
@@ -69,7 +124,7 @@ int run(int argc, char** argv) {
         app.parse(argc, argv);
     } catch (const CLI::ParseError& error) {
         if (error.get_exit_code() == 0) return app.exit(error);  // --help and --version
-        return refuse_usage(invoked(app), error.what());
+        return refuse_usage(invoked(app), explain(app, error, argc, argv));
     } catch (const certa::frontend::OptionError& error) {
         return refuse_usage(invoked(app), error.what());
     }

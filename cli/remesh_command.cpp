@@ -94,48 +94,12 @@ MeshDocument line_document(const RemeshResult& result) {
     return document;
 }
 
-Json json_of(const RemeshStatistics& s) {
-    Json json = {{"input_vertices", s.input_vertices},
-                 {"input_triangles", s.input_triangles},
-                 {"components", s.components},
-                 {"euler_characteristic", s.euler_characteristic},
-                 {"boundary_loops", s.boundary_loops},
-                 {"feature_edges", s.feature_edges},
-                 {"feature_curves", s.feature_curves},
-                 {"corners", s.corners},
-                 {"unused_vertices", s.unused_vertices},
-                 {"degenerate_triangles", s.degenerate_triangles},
-                 {"flipped_triangles", s.flipped_triangles},
-                 {"non_manifold_edges", s.non_manifold_edges},
-                 {"split_vertices", s.split_vertices},
-                 {"wedges", s.wedges},
-                 {"trisectors", s.trisectors},
-                 {"umbilic_half_turns", s.umbilic_half_turns},
-                 {"lines_min", s.lines_min},
-                 {"lines_max", s.lines_max},
-                 {"closed_lines", s.closed_lines},
-                 {"spacing_error", s.spacing_error},
-                 {"smoothing", s.smoothing},
-                 {"rounds", s.rounds},
-                 {"mended_regions", s.mended_regions},
-                 {"mended_triangles", s.mended_triangles},
-                 {"distance_bound", s.distance_bound},
-                 {"vertices", s.vertices},
-                 {"faces", s.faces},
-                 {"triangles", s.triangles},
-                 {"quads", s.quads},
-                 {"t_nodes", s.t_nodes},
-                 {"quad_share_with_t", s.quad_share_with_t},
-                 {"quad_share_without_t", s.quad_share_without_t}};
-    json["notes"] = s.notes;
-    return json;
-}
-
 void say_result(Session& session, const RemeshStatistics& s) {
     using frontend::text_of;
     session.say("input        " + counted(s.input_vertices, "vertex", "vertices") + ", " +
                 counted(s.input_triangles, "triangle") + ", " + counted(s.components, "component") + ", " +
-                counted(s.boundary_loops, "boundary loop") + ", " + counted(s.feature_edges, "feature edge"));
+                counted(s.boundary_loops, "boundary loop") + ", " +
+                counted(s.feature_curves, "crease or boundary curve"));
     session.say("lines        " + std::to_string(s.lines_max) + " max, " + std::to_string(s.lines_min) + " min, " +
                 std::to_string(s.closed_lines) + " closed; " + counted(s.wedges, "wedge") + ", " +
                 counted(s.trisectors, "trisector"));
@@ -155,15 +119,9 @@ void verify(Session& session, const RemeshArguments& arguments, const RemeshResu
     options.feature_angle_radians = arguments.options.feature_angle_radians;
     options.features = arguments.options.features;
     if (arguments.options.subdivide == 0) options.error = arguments.options.error;
-    PolygonMesh against;
-    against.positions = input.positions;
-    for (const Triangle& t : input.triangles) {
-        against.corners.insert(against.corners.end(), t.begin(), t.end());
-        against.offsets.push_back(static_cast<std::uint32_t>(against.corners.size()));
-    }
     const SurfaceCheck check = session.timed("check", [&] {
         const GracefulScope graceful;
-        return check_surface(result.mesh, against, options, session.control());
+        return check_surface(result.mesh, make_polygon_mesh(input), options, session.control());
     });
     session.report()["check"] = to_json(check);
     if (interrupt_flag() || check.outcome == Outcome::cancelled) return;
@@ -201,7 +159,7 @@ ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     });
     if (result.outcome == Outcome::cancelled) return ExitCode::interrupted;
     session.report()["outcome"] = name_of(result.outcome);
-    session.report()["statistics"] = json_of(result.statistics);
+    session.report()["statistics"] = record_of(result.statistics);
     for (const auto& [stage, seconds] : result.statistics.stage_seconds)
         session.report()["stage_seconds"][stage] = seconds;
     say_result(session, result.statistics);

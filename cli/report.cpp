@@ -77,35 +77,26 @@ Json to_json(const std::vector<Defect>& defects) {
 }
 
 Json to_json(const ConformStatistics& s) {
-    Json stages = Json::object();
-    for (const auto& [stage, seconds] : s.stage_seconds) stages[stage] = seconds;
-    return {{"input_points", s.input_points},
-            {"segments", s.segments},
-            {"facets", s.facets},
-            {"missing_segments", s.missing_segments},
-            {"missing_facets", s.missing_facets},
-            {"steiner_on_segments", s.steiner_on_segments},
-            {"steiner_in_facets", s.steiner_in_facets},
-            {"protecting_balls", s.protecting_balls},
-            {"restarts", s.restarts},
-            {"max_displacement", s.max_displacement},
-            {"stage_seconds", stages}};
+    Json result = record_of(s);
+    result["stage_seconds"] = Json::object();
+    for (const auto& [stage, seconds] : s.stage_seconds) result["stage_seconds"][stage] = seconds;
+    return result;
+}
+
+Json to_json(const std::vector<Violation>& violations) {
+    Json result = Json::array();
+    for (const Violation& violation : violations)
+        result.push_back({{"promise", violation.promise},
+                          {"elements", to_json(violation.elements)},
+                          {"place", to_json(violation.place)},
+                          {"message", violation.message}});
+    return result;
 }
 
 Json to_json(const ConformingCheck& check) {
-    Json violations = Json::array();
-    for (const Violation& violation : check.violations)
-        violations.push_back({{"promise", violation.promise},
-                              {"elements", to_json(violation.elements)},
-                              {"place", to_json(violation.place)},
-                              {"message", violation.message}});
-    return {{"violation_count", check.violation_count},
-            {"violations", violations},
-            {"full_hull", check.full_hull},
-            {"max_deviation", check.max_deviation},
-            {"tetrahedra_checked", check.tetrahedra_checked},
-            {"segments_checked", check.segments_checked},
-            {"facets_checked", check.facets_checked}};
+    Json result{{"violation_count", check.violation_count}, {"violations", to_json(check.violations)}};
+    result.update(record_of(check));
+    return result;
 }
 
 Json to_json(const DocumentInfo& info) {

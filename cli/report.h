@@ -9,15 +9,31 @@
 #include <vector>
 
 #include "frontend/option_table.h"
+#include "frontend/result_fields.h"
 
 namespace certa::cli {
 
 using Json = nlohmann::ordered_json;
 
 Json to_json(const Point3& point);
+
+/// The plain members of a result under their names.
+template <class Record>
+Json record_of(const Record& record) {
+    Json result = Json::object();
+    frontend::visit_fields(record, [&](const char* name, const auto& value) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Point3>)
+            result[name] = to_json(value);
+        else
+            result[name] = value;
+    });
+    return result;
+}
+
 Json to_json(const std::vector<ElementRef>& elements);
 Json to_json(const Defect& defect);
 Json to_json(const std::vector<Defect>& defects);
+Json to_json(const std::vector<Violation>& violations);
 Json to_json(const ConformStatistics& statistics);
 Json to_json(const ConformingCheck& check);
 Json to_json(const DocumentInfo& info);

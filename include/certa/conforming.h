@@ -19,6 +19,7 @@ enum class Protection : std::uint8_t {
     all,     ///< the whole 1-skeleton (thesis, Part I, 1.1-1.3)
 };
 
+/// What `conform` is asked for; the command and Python have the same names.
 struct ConformOptions {
     Protection protection = Protection::needed;
     bool gabriel = false;          ///< also empty the diametral ball of every constraint triangle (thesis, Part I, 1.6)
@@ -43,6 +44,7 @@ struct ConformStatistics {
     std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
+/// A conforming Delaunay mesh with the origin of each of its elements, or why there is none.
 struct ConformResult {
     Outcome outcome = Outcome::done;
     TetMesh mesh;                ///< input points first, unchanged and in order, then Steiner points
@@ -106,10 +108,16 @@ struct ComplexDefects {
 ComplexDefects find_defects(const PiecewiseLinearComplex& complex, const ConformOptions& options = {},
                             const RunControl& control = {});
 
-/// One PLC facet per polygon of the mesh.
+///@{
+/// One facet per polygon of the mesh, in the same order, over the same points.
+///
+/// Input: any mesh; `conform` says what is wrong with it.
+/// Cost:  linear.
 PiecewiseLinearComplex make_complex(const PolygonMesh& mesh);
 PiecewiseLinearComplex make_complex(const TriangleMesh& mesh);
+///@}
 
+/// What a mesh is held to by check_conforming and check_delaunay_mesh.
 struct ConformingCheckOptions {
     bool gabriel = false;
     bool merge_coplanar =
@@ -128,13 +136,14 @@ struct Violation {
     std::string message;
 };
 
+/// What check_conforming and check_delaunay_mesh found.
 struct ConformingCheck {
     std::vector<Violation> violations;  ///< at most 100 per promise are kept
     std::size_t violation_count = 0;
     bool full_hull = false;      ///< the mesh fills its convex hull: Delaunay was proved by local tests
     double max_deviation = 0.0;  ///< largest distance of a vertex from its segment or facet plane
     std::size_t tetrahedra_checked = 0, segments_checked = 0, facets_checked = 0;
-    bool ok() const { return violation_count == 0; }
+    bool ok() const { return violation_count == 0; }  ///< every promise holds
 };
 
 /// Decides whether `mesh` is a conforming Delaunay mesh of `complex`.
@@ -149,5 +158,17 @@ struct ConformingCheck {
 /// Cost:       O(n log n); deterministic.
 ConformingCheck check_conforming(const TetMesh& mesh, const PiecewiseLinearComplex& complex,
                                  const ConformingCheckOptions& options = {}, const RunControl& control = {});
+
+/// Decides what can be said about a mesh without knowing what it was made from: its form and the Delaunay property.
+///
+/// Definition: check_conforming against the mesh's own constraint triangles and edges as facets and segments, whatever
+///             its labels say.
+/// Result:     violations of "well-formed", "delaunay" and "gabriel" only; at most 100 of each promise are counted. A
+///             cancelled check counts as one violation.
+/// Errors:     InputError as check_conforming.
+/// Guarantee:  as check_conforming.
+/// Cost:       as check_conforming, and a copy of the mesh.
+ConformingCheck check_delaunay_mesh(const TetMesh& mesh, const ConformingCheckOptions& options = {},
+                                    const RunControl& control = {});
 
 }  // namespace certa

@@ -20,7 +20,7 @@ namespace certa {
 /// A symmetric bilinear form on space; plain layout: an array of these is an n x 6 array of doubles.
 struct SymmetricTensor3 {
     double xx = 0.0, xy = 0.0, xz = 0.0, yy = 0.0, yz = 0.0, zz = 0.0;
-    double trace() const { return xx + yy + zz; }
+    double trace() const { return xx + yy + zz; }  ///< the sum of the eigenvalues
     friend bool operator==(const SymmetricTensor3&, const SymmetricTensor3&) = default;
 };
 
@@ -65,6 +65,7 @@ enum class Weight : std::uint8_t {
     kernel2,    ///< (1 - t^2)^2, of order 2
     kernel4,    ///< (1 - t^2)^2 (1 - 2.5 t^2), of order 4 on interior points; kernel2 where its total is not safe
 };
+/// How curvatures are computed from the region around a vertex.
 enum class Estimator : std::uint8_t {
     normal_cycle,  ///< the thesis's
     corrected,     ///< corrected normal current (Lachaud, Romon, Thibert 2022) with averaged vertex normals
@@ -72,6 +73,7 @@ enum class Estimator : std::uint8_t {
     automatic,     ///< one of them, with its size, from the noise that the data shows
 };
 
+/// What `compute_curvature` is asked for; the command and Python have the same names.
 struct CurvatureOptions {
     Neighborhood neighborhood = Neighborhood::rings;
     std::uint64_t rings = 2;            ///< of `rings`, in [1, 100]
@@ -167,9 +169,8 @@ struct CurvatureResult {
 ///             alternates, else the edge is left out. Nothing needs to be closed, connected or manifold.
 /// Result:     see CurvatureResult.
 /// Errors:     InputError empty_input, index_out_of_range, non_finite_coordinate, option_out_of_range.
-/// Guarantee:  total.gaussian = 2 pi chi on closed manifolds up to rounding; same bits for any number of threads;
-/// scaling
-///             by 2^k scales every result exactly (tests/curvature). `geodesic` is first-order accurate in the
+/// Guarantee:  total.gaussian = 2 pi chi on closed manifolds up to rounding; same bits for any number of threads.
+///             Scaling by 2^k scales every result exactly (tests/curvature). `geodesic` is first-order accurate in the
 ///             distance only.
 /// Cost:       O(n log n) to sort, then O(region) per vertex, with no allocation per vertex.
 /// Source:     thesis, 2.1-2.5; what differs and why: docs/curvature.md.
@@ -178,6 +179,7 @@ CurvatureResult compute_curvature(const TriangleMesh& mesh, const CurvatureOptio
 
 /// A set of points of space: primitives joined by set algebra.
 struct Region {
+    /// Primitives, and sets made of `parts`.
     enum class Kind : std::uint8_t { everything, ball, box, half_space, faces, predicate, complement, both, either };
     Kind kind = Kind::everything;
     Point3 center, corner;             ///< ball: centre. box: lower and upper corner. half_space: point and outward
@@ -187,14 +189,27 @@ struct Region {
     std::function<bool(const Point3&)> predicate;  ///< approximated by bisection, see RegionOptions::tolerance
     std::vector<Region> parts;                     ///< complement: one; both, either: any number
 };
+///@{
+/// The closed ball, box, or half-space {x : (x - point) . outward_normal <= 0}; the triangles with these 0-based
+/// numbers.
+///
+/// Input: lengths and places in the mesh's unit; the normal need not be unit. compute_region_measures refuses what
+///        makes no sense.
 Region make_ball_region(const Point3& center, double radius);
 Region make_box_region(const Point3& lower, const Point3& upper);
 Region make_half_space_region(const Point3& point, const Point3& outward_normal);
 Region make_face_region(std::vector<std::uint32_t> faces);
+///@}
+
+///@{
+/// What is not in the region; what is in all of the regions (of none: everything); what is in any of them (of none:
+/// nothing).
 Region make_complement(Region region);
 Region make_intersection(std::vector<Region> regions);
 Region make_union(std::vector<Region> regions);
+///@}
 
+/// What `compute_region_measures` is asked for.
 struct RegionOptions {
     Rim rim = Rim::half;           ///< of face sets: half, closed or open
     Length tolerance{1e-4, true};  ///< predicates: triangles and edges are bisected down to this length
@@ -202,6 +217,7 @@ struct RegionOptions {
     std::optional<double> max_curvature = std::nullopt;  ///< as in CurvatureOptions
 };
 
+/// The measures of one region.
 struct RegionResult {
     Outcome outcome = Outcome::done;
     CurvatureMeasures measures;
@@ -237,8 +253,10 @@ std::vector<int> compute_multiplicities(const TriangleMesh& mesh, VertexId verte
 /// volume between a convex solid's boundary and the offset at distance eps (thesis, 2.2.1, the tube formula).
 struct TubeFormula {
     double linear = 0.0, quadratic = 0.0, cubic = 0.0;
+    /// Volume between the surface and the offset at this distance.
     double volume(double offset) const { return offset * (linear + offset * (quadratic + offset * cubic)); }
 };
+/// The tube formula whose coefficients are these measures.
 TubeFormula compute_tube_formula(const CurvatureMeasures& measures);
 
 /// A surface made of triangles, and where they come from.
@@ -247,15 +265,19 @@ struct TriangulatedSurface {
     std::vector<std::uint32_t> source_faces;  ///< per triangle: the polygon, or the tetrahedron behind it
 };
 
-/// Cuts polygons into triangles by their own plane; the cut depends on the polygon only, not on where its list of
-/// corners starts. Polygons of fewer than three corners are left out.
+/// Cuts polygons into triangles by their own plane.
+///
+/// Result: triangles in the order of the polygons; the cut depends on the polygon only, not on where its list of
+///         corners starts. Polygons of fewer than three corners are left out.
+/// Cost:   linear but for large polygons; deterministic.
 TriangulatedSurface triangulate(const PolygonMesh& mesh);
 /// The surface of a document: its polygons, or, where there are tetrahedra, the outward boundary of the given regions
 /// (field "region" of tetrahedra, else marker; none given: of all tetrahedra).
 ///
 /// Errors: InputError empty_input where nothing is left; hole_outside_facet where a facet has hole points.
 TriangulatedSurface triangulate(const MeshDocument& document, const std::optional<std::int64_t>& region = std::nullopt);
-/// The regions that a document's tetrahedra name, in increasing order; empty without tetrahedra.
+/// The regions that a document's tetrahedra name (field "region", else marker), in increasing order; empty without
+/// tetrahedra.
 std::vector<std::int64_t> find_regions(const MeshDocument& document);
 
 /// The result as vertex fields of a document: area, mean, gaussian, k_min, k_max, dir_min, dir_max, normal, confidence,

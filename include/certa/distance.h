@@ -8,6 +8,7 @@
 
 namespace certa {
 
+/// How closely measure_distance looks.
 struct DistanceOptions {
     std::uint64_t samples = 30000;  ///< on each surface, in proportion to area, beside all its vertices
     std::uint64_t seed = 1;
@@ -25,6 +26,7 @@ struct OneSidedDistance {
     double bound = 0.0;            ///< no point is farther from the other surface; 0 where none was asked for
 };
 
+/// Two-sided distance between two surfaces: measured, and bounded.
 struct SurfaceDistance {
     OneSidedDistance to_second;    ///< from the points of the first surface to the second
     OneSidedDistance to_first;     ///< from the points of the second surface to the first

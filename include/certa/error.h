@@ -39,11 +39,15 @@ enum class DefectKind : std::uint8_t {
     point_on_facet,           // exactly on a facet that does not list it: adopted, a note
     segment_in_facet,         // a segment has a part in a facet that does not list it; adopted when wholly in it
 };
+/// The name as it is written here; valid for ever.
 const char* name_of(DefectKind kind);
 
+/// What an ElementRef counts.
 enum class ElementKind : std::uint8_t { vertex, segment, facet, polygon, tetrahedron, triangle, edge, option };
+/// The name as it is written here; valid for ever.
 const char* name_of(ElementKind kind);
 
+/// One element of the caller's data or of a mesh.
 struct ElementRef {
     ElementKind kind = ElementKind::vertex;
     std::uint32_t index = 0;  ///< 0-based; messages show it 1-based, the file's count being theirs
@@ -61,8 +65,8 @@ struct Defect {
 /// The caller's data is wrong; nothing was computed. Carries every violation that was found.
 class InputError : public std::runtime_error {
 public:
-    explicit InputError(std::vector<Defect> defects);
-    const std::vector<Defect>& defects() const { return defects_; }
+    explicit InputError(std::vector<Defect> defects);                ///< at least one; what() lists the first of them
+    const std::vector<Defect>& defects() const { return defects_; }  ///< all that was found, in a fixed order
 
 private:
     std::vector<Defect> defects_;
@@ -71,10 +75,10 @@ private:
 /// A file cannot be read or written. `line` is 1-based, 0 where there is none (binary data, missing file).
 class IoError : public std::runtime_error {
 public:
-    IoError(std::string path, std::uint64_t line, std::string reason);
-    const std::string& path() const { return path_; }
-    std::uint64_t line() const { return line_; }
-    const std::string& reason() const { return reason_; }
+    IoError(std::string path, std::uint64_t line, std::string reason);  ///< what() joins the three
+    const std::string& path() const { return path_; }                   ///< as the caller wrote it
+    std::uint64_t line() const { return line_; }                        ///< 1-based; 0: none
+    const std::string& reason() const { return reason_; }               ///< a sentence without path and line
 
 private:
     std::string path_;

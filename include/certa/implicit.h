@@ -22,6 +22,7 @@ class Node;
 /// A text that is no expression: what is wrong and where. what() shows the line with a caret under the column.
 class ExpressionError : public IoError {
 public:
+    /// `name` stands for the text, `line_text` is the line that the caret is drawn under.
     ExpressionError(std::string name, std::uint64_t line, std::uint64_t column, std::string reason,
                     std::string_view line_text);
     std::uint64_t column() const { return column_; }  ///< 1-based, in bytes
@@ -37,27 +38,39 @@ private:
 /// Cost:       every operation O(1), but for constants; thread-safe.
 class Expression {
 public:
-    Expression(double constant);  // NOLINT: a finite number is an expression. Errors: InputError unless finite
+    /// The number as it is. Errors: InputError unless it is finite.
+    Expression(double constant);  // NOLINT: numbers are expressions
+    ///@{
+    /// The coordinates and the circle's number.
     static Expression x();
     static Expression y();
     static Expression z();
     static Expression pi();
+    ///@}
 
+    /// From and to the library's own tree, which is not part of the public face.
     explicit Expression(std::shared_ptr<const expression::Node> node) : node_(std::move(node)) {}
-    const std::shared_ptr<const expression::Node>& node() const { return node_; }
+    const std::shared_ptr<const expression::Node>& node() const { return node_; }  ///< the library's own tree
 
 private:
     std::shared_ptr<const expression::Node> node_;
 };
 
+///@{
+/// The operation, written down and not carried out. A quotient is defined where the divisor is not 0.
 Expression operator-(const Expression& a);
 Expression operator+(const Expression& a, const Expression& b);
 Expression operator-(const Expression& a, const Expression& b);
 Expression operator*(const Expression& a, const Expression& b);
 Expression operator/(const Expression& a, const Expression& b);
+///@}
 /// Integer powers for every base, a^0 = 1; other constant exponents for a > 0 (1/2: the square root).
+///
 /// Errors: InputError when the exponent depends on x, y or z.
 Expression pow(const Expression& a, const Expression& exponent);
+
+///@{
+/// The function as mathematics has it; `undefined` is the answer where it is not (sqrt and log below 0).
 Expression sqrt(const Expression& a);
 Expression exp(const Expression& a);
 Expression log(const Expression& a);
@@ -68,13 +81,18 @@ Expression atan(const Expression& a);
 Expression sinh(const Expression& a);
 Expression cosh(const Expression& a);
 Expression tanh(const Expression& a);
+///@}
 
-/// Smooth minimum (a + b - sqrt((a - b)^2 + k^2)) / 2, k > 0 constant: at most k/2 below min(a, b), as smooth as a and
-/// b are. The union of solids that are negative inside; intersection is the maximum, difference a without b. Errors:
-/// InputError when k is not a positive constant.
+///@{
+/// Solids that are negative inside, joined, cut and subtracted (a without b) with a rounded seam.
+///
+/// Definition: the union is the smooth minimum (a + b - sqrt((a - b)^2 + k^2)) / 2: at most k/2 below min(a, b), as
+///             smooth as a and b are. The intersection is the smooth maximum, the difference that of a and -b.
+/// Errors:     InputError when k is not a positive constant.
 Expression smooth_union(const Expression& a, const Expression& b, const Expression& k);
 Expression smooth_intersection(const Expression& a, const Expression& b, const Expression& k);
 Expression smooth_difference(const Expression& a, const Expression& b, const Expression& k);
+///@}
 
 /// The expression that a generic C++ callable computes: it is called once, with expressions for x, y and z.
 ///
@@ -101,23 +119,29 @@ Expression parse_expression(std::string_view text, const std::string& name = "ex
 /// to the same function with the same sharing.
 std::string format_expression(const Expression& function);
 
-/// Value and gradient in doubles, rounded at every step: for drawing and searching, not for proofs. NaN where
-/// undefined.
+/// Value and gradient in doubles.
 struct PointValue {
     double value = 0.0;
     Point3 gradient;
 };
+/// Value and gradient at a point, rounded at every step: for drawing and searching, not for proofs.
+///
+/// Result: NaN where the function is undefined.
+/// Cost:   O(operations), and as much memory; thread-safe.
 PointValue evaluate(const Expression& function, const Point3& place);
 
+/// What is proved about a zero set and its mesh.
 enum class ImplicitVerdict : std::uint8_t {
     certified,  ///< the mesh is isotopic to the zero set in the box
     empty,      ///< the zero set in the box is proved to be empty
     undecided,  ///< nothing is claimed; the obstacles say where and why
 };
+/// The name as it is written here.
 const char* name_of(ImplicitVerdict verdict);
 
 /// A box where the proof got stuck, and why.
 struct ImplicitObstacle {
+    /// What stopped the proof there.
     enum class Reason : std::uint8_t {
         singular,        ///< f and its gradient cannot be told from 0 together
         meets_box,       ///< the surface crosses or touches the boundary of the box
@@ -125,20 +149,24 @@ struct ImplicitObstacle {
         undefined,       ///< f cannot be shown to be defined there
         precision,       ///< the cell is as small as doubles allow
         budget,          ///< max_cells, time_seconds or memory_bytes
-        cancelled,
+        cancelled,       ///< by RunControl
     };
     Reason reason{};
     Point3 low, high;
 };
+/// The name as it is written here.
 const char* name_of(ImplicitObstacle::Reason reason);
 
+/// How the topology is certified.
 enum class ImplicitEngine : std::uint8_t {
     growth,            ///< this project's: W by free growth, with a certificate
     plantinga_vegter,  ///< subdivision by small normal variation: the same claim by another theorem, no certificate
     thesis,            ///< as growth, with W by the thesis's watershed: for comparison; closed surfaces only
 };
+/// The name as the command has it: `_` becomes `-`.
 const char* name_of(ImplicitEngine engine);
 
+/// What `mesh_implicit` is asked for; the command and Python have the same names.
 struct ImplicitOptions {
     /// Cells of the octree; about 100 bytes each, 2000 near the surface.
     std::optional<std::uint64_t> max_cells = 4'000'000;
@@ -173,12 +201,14 @@ struct ImplicitComponent {
     int loops = 0;                        ///< boundary loops in the faces of a box that clips
 };
 
+/// Counts of one run.
 struct ImplicitStatistics {
     std::uint64_t evaluations = 0;                         ///< enclosures of f over boxes, with or without derivatives
     std::uint64_t cells = 0, leaves = 0, open_leaves = 0;  ///< open: no sign of f is proved on the leaf
     std::uint64_t clusters = 0, rounds = 0, tetrahedra = 0;
 };
 
+/// A mesh of the zero set, and what is proved about it.
 struct ImplicitResult {
     Outcome outcome = Outcome::done;
     ImplicitVerdict verdict = ImplicitVerdict::undecided;
@@ -203,8 +233,7 @@ struct ImplicitResult {
 /// Result:     see ImplicitResult.
 /// Errors:     InputError for a box that makes no sense.
 /// Guarantee:  `certified`: the zero set in the box is a smooth closed surface, ambient isotopic in the box to the mesh
-/// as its
-///             doubles stand; `empty`: there is none (docs/implicit-theorem.md). Whatever cannot be proved is
+///             as its doubles stand; `empty`: there is none (docs/implicit-theorem.md). Whatever cannot be proved is
 ///             `undecided`.
 /// Cost:       grows with the logarithm of the distance to the next critical value for isolated critical points;
 ///             deterministic for any number of threads.
@@ -222,18 +251,16 @@ struct ImplicitCheck {
     std::vector<int> genera;          ///< per component of the mesh, sorted
     std::vector<int> loops;           ///< of a clipped surface, in the order of genera: boundary loops
     std::size_t leaves_checked = 0, marks_checked = 0, triangles_checked = 0;
-    bool ok() const { return violation_count == 0; }
+    bool ok() const { return violation_count == 0; }  ///< all that the certificate claims is proved
 };
 
 /// Decides whether a certificate proves that a mesh is isotopic to the zero set of a function.
 ///
 /// Input:      the mesh as its doubles stand, vertices in the order of the certificate; the function's text, read by
-/// the
-///             checker's own reader; a certificate of mesh_implicit.
+///             the checker's own reader; a certificate of mesh_implicit.
 /// Result:     a cancelled check counts as one violation: nothing is proved.
 /// Guarantee:  every condition of docs/implicit-theorem.md is decided anew: enclosures by MPFI, octree, triangulation,
-/// replay of
-///             the marks, degrees, components, and exact positions. Shares no code with mesh_implicit.
+///             replay of the marks, degrees, components, and exact positions. Shares no code with mesh_implicit.
 /// Cost:       some times that of mesh_implicit; deterministic.
 ImplicitCheck check_implicit(const TriangleMesh& mesh, std::string_view function, std::string_view certificate,
                              const RunControl& control = {});

@@ -2,6 +2,7 @@
 // Triangle meshes of any origin against the zero set of a function.
 #include <certa/implicit.h>
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -9,11 +10,13 @@
 
 namespace certa {
 
+/// What is proved about a mesh and a zero set.
 enum class ImplicitMeshVerdict : std::uint8_t {
     certified,  ///< the mesh is isotopic to the zero set in the box
     refuted,    ///< it is not: it is no embedded closed surface, or its components, genera or their nesting differ
     undecided,  ///< nothing is claimed
 };
+/// The name as it is written here.
 const char* name_of(ImplicitMeshVerdict verdict);
 
 /// What is proved about a mesh that any program may have made.
@@ -41,6 +44,13 @@ struct ImplicitMeshCheck {
 ImplicitMeshCheck judge_implicit_mesh(const TriangleMesh& mesh, std::string_view function, std::string_view certificate,
                                       const RunControl& control = {});
 
+/// Low and high corner of a box in which a mesh can be compared with a zero set: its own, enlarged by about a sixth.
+///
+/// Definition: the margins differ from side to side and are no simple fractions of the size, so that grids of marching
+///             cubes are not aligned with the cells of the proof.
+/// Errors:     InputError empty_input for a mesh without points.
+std::array<Point3, 2> find_box_around(const TriangleMesh& mesh);
+
 /// Decides what a mesh made by any program is to the zero set of a function in a box.
 ///
 /// Input:      any triangle mesh, vertices shared, not within reach of the box's boundary; the function's text.
@@ -48,8 +58,7 @@ ImplicitMeshCheck judge_implicit_mesh(const TriangleMesh& mesh, std::string_view
 ///             grown along the mesh, leaves being split where the mesh leaves it, up to eight times. What is said is
 ///             what judge_implicit_mesh says: the growth only proposes.
 /// Result:     `reasons` and `obstacles` say what hinders; outcome over_budget or undecided where the zero set's
-/// topology
-///             could not be proved.
+///             topology could not be proved.
 /// Errors:     ExpressionError; InputError for a box that makes no sense.
 /// Cost:       that of mesh_implicit and its check, some times.
 ImplicitMeshCheck check_mesh_against(const TriangleMesh& mesh, std::string_view function, const Point3& low,

@@ -29,6 +29,7 @@ struct SurfaceInfo {
     std::optional<double> volume;  ///< enclosed, positive for normals that point outwards; closed, consistent surfaces
 };
 
+/// The tetrahedra of a document, in numbers.
 struct TetrahedraInfo {
     std::size_t tetrahedra = 0;
     std::size_t vertices = 0;                ///< points that some tetrahedron uses
@@ -41,6 +42,7 @@ struct TetrahedraInfo {
     double smallest_dihedral_radians = 0.0, largest_dihedral_radians = 0.0;  ///< over those that are positive
 };
 
+/// A document, in numbers.
 struct DocumentInfo {
     std::size_t points = 0, duplicate_points = 0, unused_points = 0;  ///< duplicates: equal to an earlier point
     std::size_t segments = 0;                                         ///< given on their own

@@ -10,17 +10,23 @@
 
 namespace certa {
 
+/// Formats of files (docs/formats.md).
 enum class Format : unsigned char { off, obj, ply, stl, poly, smesh, node, medit, vtu, msh, csv };
+/// How numbers are written, where a format knows both; automatic: the format's usual one (docs/formats.md).
 enum class Encoding : unsigned char { automatic, ascii, binary };
 
 /// The format that a file name's extension stands for, if any.
 std::optional<Format> format_of(std::string_view path);
+/// The name as it is written here.
 const char* name_of(Format format);
-std::optional<Format> format_named(std::string_view name);  ///< inverse of name_of
+/// The format of that name, if any: the inverse of name_of.
+std::optional<Format> format_named(std::string_view name);
 
+/// How a file is read.
 struct ReadOptions {
     std::optional<Format> format = std::nullopt;  ///< by extension, else by content, when empty; needed for "-"
 };
+/// How a file is written.
 struct WriteOptions {
     std::optional<Format> format = std::nullopt;
     Encoding encoding = Encoding::automatic;
@@ -34,15 +40,19 @@ MeshDocument read_document(const std::string& path, const ReadOptions& options =
 
 /// Writes a file ("-": standard output) under a temporary name and renames it when complete.
 ///
-/// Every number reads back as the same double. Errors: IoError, also when the format cannot carry something that the
-/// document holds (the message names a format that can).
+/// Guarantee: every number reads back as the same double; the file appears whole or not at all.
+/// Errors:    IoError, also when the format cannot carry something that the document holds (the message names a format
+///            that can).
 void write_document(const std::string& path, const MeshDocument& document, const WriteOptions& options = {});
 
-/// Reading from and writing to memory; `name` stands for the file in error messages.
+///@{
+/// Reading from and writing to memory, otherwise as read_document and write_document; `name` stands for the file in
+/// error messages.
 MeshDocument parse_document(std::string_view text, Format format, const std::string& name = "input");
 std::string format_document(const MeshDocument& document, Format format, const WriteOptions& options = {});
+///@}
 
-/// Writes a text the way write_document writes a file: complete or not at all.
+/// Writes a text the way write_document writes a file: complete or not at all. Errors: IoError.
 void write_text(const std::string& path, std::string_view text);
 
 /// Removes the temporary files of writes in progress. Async-signal-safe: for handlers that end the process.
@@ -65,5 +75,19 @@ MeshDocument make_document(const TetMesh& mesh, const PiecewiseLinearComplex& co
 ///         ("references": markers); what is not positive is no label (no_index; region 0).
 /// Errors: IoError that names the first polygon that is no triangle, or a label beyond 32 bits.
 TetMesh make_tet_mesh(const MeshDocument& document);
+
+/// The polygons of a document that are faces, of three corners or more, in their order: segments and points that facets
+/// hold are left out, and what makes several polygons one facet.
+///
+/// Result: without polygons when there are none.
+PolygonMesh make_polygon_mesh(const MeshDocument& document);
+
+/// The triangles of a document, triangle i being polygon i.
+///
+/// Errors: IoError that names the first polygon that is no triangle, as make_tet_mesh.
+TriangleMesh make_triangle_mesh(const MeshDocument& document);
+
+/// The same triangles as polygons.
+PolygonMesh make_polygon_mesh(const TriangleMesh& mesh);
 
 }  // namespace certa

@@ -11,9 +11,9 @@
 
 namespace certa {
 
-using Triangle = std::array<VertexId, 3>;
-using Edge = std::array<VertexId, 2>;
-using Tetrahedron = std::array<VertexId, 4>;
+using Triangle = std::array<VertexId, 3>;     ///< corners
+using Edge = std::array<VertexId, 2>;         ///< ends
+using Tetrahedron = std::array<VertexId, 4>;  ///< corners
 
 /// Triangles over shared vertices; counter-clockwise seen from outside.
 struct TriangleMesh {
@@ -60,8 +60,8 @@ struct PiecewiseLinearComplex {
     std::vector<Point3> region_holes;  ///< the region around each of these is left out
     std::vector<RegionSeed> region_seeds;
 
-    std::size_t facet_count() const { return facet_offsets.size() - 1; }
-    std::size_t polygon_count() const { return polygon_offsets.size() - 1; }
+    std::size_t facet_count() const { return facet_offsets.size() - 1; }      ///< number of facets
+    std::size_t polygon_count() const { return polygon_offsets.size() - 1; }  ///< number of polygons of all facets
 };
 
 /// Appends one facet made of `polygons` (see PiecewiseLinearComplex) and its hole points.
@@ -74,6 +74,7 @@ enum class VertexOrigin : std::uint8_t {
     segment,  ///< Steiner point on input segment `index`
     facet,    ///< Steiner point inside input facet `index`
 };
+/// The element of the input that a vertex lies on.
 struct VertexSource {
     VertexOrigin origin = VertexOrigin::input;
     std::uint32_t index = 0;
@@ -93,8 +94,9 @@ struct TetMesh {
     std::vector<SegmentId> edge_segments;
 };
 
-/// A named array beside the elements of a document, `components` numbers per element.
+/// Elements that a field has numbers for.
 enum class Location : std::uint8_t { vertices, polygons, segments, tetrahedra };
+/// A named array beside the elements of a document, `components` numbers per element.
 struct Field {
     std::string name;
     Location location = Location::vertices;

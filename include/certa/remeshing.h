@@ -19,6 +19,7 @@ enum class RemeshOutput : std::uint8_t {
     triangles,
 };
 
+/// What `remesh` is asked for; the command and Python have the same names.
 struct RemeshOptions {
     /// How fine: at most one of the three; without any, an error of 0.2 % of the diagonal.
     std::optional<Length> error = std::nullopt;  ///< bound on the distance between result and input, both ways
@@ -49,6 +50,7 @@ struct Umbilic {
     int half_turns = 0;      ///< index times two
 };
 
+/// Counts, choices and times of one run.
 struct RemeshStatistics {
     std::size_t input_vertices = 0, input_triangles = 0, components = 0;
     std::int64_t euler_characteristic = 0;
@@ -73,6 +75,7 @@ struct RemeshStatistics {
     std::vector<std::pair<std::string, double>> stage_seconds;
 };
 
+/// Polygons along lines of curvature.
 struct RemeshResult {
     Outcome outcome = Outcome::done;
     PolygonMesh mesh;

@@ -15,7 +15,9 @@ struct RunControl {
     /// Number of threads; 0 means all. Results do not depend on it.
     unsigned threads = 0;
 
+    /// Somebody asked for the end.
     bool cancelled() const { return cancel != nullptr && cancel->load(std::memory_order_relaxed); }
+    /// Calls `progress` if there is one.
     void report(std::string_view stage, double fraction) const {
         if (progress) progress(stage, fraction);
     }
@@ -23,6 +25,7 @@ struct RunControl {
 
 /// How a computation ended. Anything but `done` keeps what was computed, labelled as partial.
 enum class Outcome : unsigned char { done, over_budget, below_min_feature, undecided, cancelled };
+/// The name as it is written here.
 const char* name_of(Outcome outcome);
 
 }  // namespace certa

@@ -12,6 +12,7 @@
 
 namespace certa {
 
+/// What a surface mesh is held to by check_surface.
 struct SurfaceCheckOptions {
     /// Promised bound on the distance, both ways. Empty: distances are measured, nothing is demanded of them.
     std::optional<Length> error = std::nullopt;
@@ -34,6 +35,7 @@ struct ComponentShape {
     std::int64_t genus = 0;
     friend bool operator==(const ComponentShape&, const ComponentShape&) = default;
 };
+/// Counts of a polygon mesh, exact.
 struct SurfaceShape {
     std::size_t vertices = 0;  ///< that polygons use
     std::size_t edges = 0, polygons = 0, triangles = 0, quads = 0;
@@ -42,11 +44,13 @@ struct SurfaceShape {
     std::size_t non_manifold_edges = 0;     ///< of more than two polygons
     std::size_t non_manifold_vertices = 0;  ///< whose polygons do not form one fan
     std::size_t inconsistent_edges = 0;     ///< that both polygons walk the same way
+    /// Every edge has one polygon or two, every vertex one fan.
     bool is_manifold() const { return non_manifold_edges == 0 && non_manifold_vertices == 0; }
+    /// Manifold, and polygons that share an edge walk it in opposite directions.
     bool is_oriented() const { return is_manifold() && inconsistent_edges == 0; }
 };
 
-/// Lengths in the input's unit.
+/// How closely a mesh follows the input's creases. Lengths in the input's unit.
 struct CreaseCover {
     std::size_t edges = 0, corners = 0;  ///< of the input; its boundary is part of the creases
     double length = 0.0;
@@ -55,6 +59,7 @@ struct CreaseCover {
     double corner_distance = 0.0;  ///< largest, from a corner to the nearest vertex of the mesh
 };
 
+/// What check_surface found.
 struct SurfaceCheck {
     std::vector<Violation> violations;  ///< at most 100 per promise are kept
     std::size_t violation_count = 0;
@@ -67,7 +72,7 @@ struct SurfaceCheck {
     std::size_t input_contacts = 0;     ///< of the input; looked for only where the mesh has any
     std::vector<std::string> promises;  ///< the names of what was checked
     Outcome outcome = Outcome::done;
-    bool ok() const { return violation_count == 0; }
+    bool ok() const { return violation_count == 0; }  ///< every promise holds
 };
 
 /// Decides whether `mesh` is a faithful version of `input`.
@@ -75,8 +80,7 @@ struct SurfaceCheck {
 /// Promises:   well-formed  manifold and consistently oriented where the input is
 ///             topology     as many components, each with the genus and boundary loops of one of the input
 ///             unfolded     no triangle turns away by 90 degrees or more from every polygon of the input that is
-///             nearest
-///                          to its middle
+///                          nearest to its middle
 ///             embedded     no two polygons meet but in what they share, exactly; not asked where the input does so
 ///             creases      every crease and boundary of the input is covered by edges, every corner by a vertex
 ///             error        with `error`: the proved bound on the distance is not above it
@@ -90,12 +94,17 @@ struct SurfaceCheck {
 SurfaceCheck check_surface(const PolygonMesh& mesh, const PolygonMesh& input, const SurfaceCheckOptions& options = {},
                            const RunControl& control = {});
 
-/// Pairs of polygons (lower number first, sorted) that meet beyond the corners and sides that they share; exact.
-/// Polygons of more than three corners count under each triangulation that certa/distance.h lists. Errors: as
-/// measure_distance.
+/// Pairs of polygons that meet beyond the corners and sides that they share; exact.
+///
+/// Definition: polygons of more than three corners count under each triangulation that certa/distance.h lists.
+/// Result:     0-based numbers of polygons, the lower first, sorted.
+/// Errors:     as measure_distance.
 std::vector<std::array<std::uint32_t, 2>> find_contacts(const PolygonMesh& mesh, const RunControl& control = {});
 
-/// Counts of components, boundary and what is not manifold.
+/// Counts components, boundary and what is not manifold.
+///
+/// Errors: as measure_distance.
+/// Cost:   O(n log n); deterministic.
 SurfaceShape compute_surface_shape(const PolygonMesh& mesh);
 
 }  // namespace certa

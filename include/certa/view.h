@@ -19,6 +19,7 @@ struct ViewModel {
 /// The axis that points upwards in the first view.
 enum class UpAxis : unsigned char { y, z };
 
+/// What a page is asked for.
 struct ViewOptions {
     std::string title;  ///< of the page; empty: the names of the models
     UpAxis up = UpAxis::z;
@@ -28,13 +29,13 @@ struct ViewOptions {
 ///
 /// Input:      any documents that readers return; polygons may be non-planar and may cross, as in files to be mended.
 /// Result:     positions are embedded in single precision relative to the model's box, all other numbers exactly;
-/// fields of
-///             one component can be colours, of three components lines; of others each component can be a colour.
+///             fields of one component can be colours, of three components lines; of others each component can be a
+///             colour.
 /// Errors:     InputError: empty_input without a model or for a model without points, non_finite_coordinate,
 ///             index_out_of_range for corners or fields that do not fit.
 /// Guarantee:  the same bytes for the same models; the page opens without a network (tested in Chromium).
 /// Cost:       linear; about 48 bytes per vertex of a triangle mesh, 22 per tetrahedron, at most 11 per number of a
-/// field.
+///             field.
 std::string format_view(std::span<const ViewModel> models, const ViewOptions& options = {});
 
 }  // namespace certa

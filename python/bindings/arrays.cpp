@@ -2,6 +2,8 @@
 // passed; what is left here is what a loop over numbers decides: that every index is one of a vertex.
 #include "arrays.h"
 
+#include <algorithm>
+
 namespace certa::python {
 namespace {
 
@@ -9,6 +11,12 @@ py::str decoded(std::string_view bytes, const char* errors) {
     PyObject* object = PyUnicode_DecodeUTF8(bytes.data(), static_cast<py::ssize_t>(bytes.size()), errors);
     if (object == nullptr) throw py::error_already_set();
     return py::reinterpret_steal<py::str>(object);
+}
+
+/// All in [1, count], and `count` among them: what files that count from 1 would have.
+bool seems_to_count_from_one(const std::int64_t* ids, std::size_t size, std::size_t count) {
+    const auto [low, high] = std::minmax_element(ids, ids + size);
+    return size > 0 && *low >= 1 && static_cast<std::uint64_t>(*high) == count;
 }
 
 /// Refusals beyond this number are counted, not listed.
@@ -62,6 +70,8 @@ std::vector<std::uint32_t> vertices_from(const Integers& array, ElementKind kind
                              (in[i] < 0 ? ", and do not count from the end" : "");
         }
     }
+    if (!defects.empty() && seems_to_count_from_one(in, size, vertex_count))
+        defects.front().message += "; these indices seem to count from 1: subtract 1 from them";
     if (!defects.empty()) throw InputError(std::move(defects));
     return ids;
 }

@@ -8,22 +8,6 @@
 namespace certa::python {
 namespace {
 
-py::dict statistics_of(const ConformStatistics& s) {
-    py::dict out;
-    out["input_points"] = s.input_points;
-    out["segments"] = s.segments;
-    out["facets"] = s.facets;
-    out["missing_segments"] = s.missing_segments;
-    out["missing_facets"] = s.missing_facets;
-    out["steiner_on_segments"] = s.steiner_on_segments;
-    out["steiner_in_facets"] = s.steiner_in_facets;
-    out["protecting_balls"] = s.protecting_balls;
-    out["restarts"] = s.restarts;
-    out["max_displacement"] = s.max_displacement;
-    out["stage_seconds"] = to_python(s.stage_seconds);
-    return out;
-}
-
 /// The input after `repair` and `triangulate`: it is what the mesh conforms to and is checked against.
 struct Mended {
     PiecewiseLinearComplex complex;
@@ -117,14 +101,9 @@ py::dict conform_to_python(const py::object& object, const py::dict& given, bool
 }  // namespace
 
 py::dict to_python(const ConformingCheck& check) {
-    py::dict out;
+    py::dict out = record_of(check);
     out["violations"] = to_python(check.violations);
     out["violation_count"] = check.violation_count;
-    out["max_deviation"] = check.max_deviation;
-    out["full_hull"] = check.full_hull;
-    out["tetrahedra_checked"] = check.tetrahedra_checked;
-    out["segments_checked"] = check.segments_checked;
-    out["facets_checked"] = check.facets_checked;
     return out;
 }
 

@@ -46,25 +46,13 @@ py::dict bound_to_python(const ApproximationBound& b) {
     return out;
 }
 
-py::dict statistics_of(const CurvatureStatistics& s) {
-    py::dict out;
-    out["vertices"] = s.vertices;
-    out["triangles"] = s.triangles;
-    out["edges"] = s.edges;
-    out["border_edges"] = s.border_edges;
-    out["non_manifold_edges"] = s.non_manifold_edges;
-    out["excluded_edges"] = s.excluded_edges;
-    out["non_manifold_vertices"] = s.non_manifold_vertices;
-    out["unused_vertices"] = s.unused_vertices;
-    out["flat_triangles"] = s.flat_triangles;
-    out["repeated_vertices"] = s.repeated_vertices;
-    out["components"] = s.components;
-    out["mean_edge_length"] = s.mean_edge_length;
+/// With what the choice of a size has found.
+py::dict statistics_with_choice(const CurvatureStatistics& s) {
+    py::dict out = statistics_of(s);
     out["noise"] = s.noise;
     out["choice"] = s.choice;
     out["radius"] = s.radius;
     out["fallbacks"] = s.fallbacks;
-    out["stage_seconds"] = to_python(s.stage_seconds);
     return out;
 }
 
@@ -100,7 +88,7 @@ py::dict curvature(const py::object& object, const py::dict& given, const py::ob
     out["source_faces"] = widen_ids(surface.source_faces);
     out["total"] = measures_to_python(result.total);
     out["euler_characteristic"] = result.euler_characteristic;
-    out["statistics"] = statistics_of(result.statistics);
+    out["statistics"] = statistics_with_choice(result.statistics);
     out["statistics"]["estimator"] =
         frontend::value_of(*std::find_if(frontend::curvature_options().begin(), frontend::curvature_options().end(),
                                          [](const auto& option) { return option.name == "estimator"; }),
@@ -147,7 +135,7 @@ py::dict region_measures(const py::object& object, const py::dict& given, const 
     out["outcome"] = name_of(result.outcome);
     out["measures"] = measures_to_python(result.measures);
     out["bound"] = result.bound ? py::object(bound_to_python(*result.bound)) : py::none();
-    out["statistics"] = statistics_of(result.statistics);
+    out["statistics"] = statistics_with_choice(result.statistics);
     return out;
 }
 

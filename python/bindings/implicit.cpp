@@ -63,16 +63,7 @@ py::dict result_to_python(ImplicitResult&& result) {
     out["hausdorff"] = to_python(result.hausdorff);
     out["low"] = point(result.low);
     out["high"] = point(result.high);
-    const ImplicitStatistics& s = result.statistics;
-    py::dict statistics;
-    statistics["evaluations"] = s.evaluations;
-    statistics["cells"] = s.cells;
-    statistics["leaves"] = s.leaves;
-    statistics["open_leaves"] = s.open_leaves;
-    statistics["clusters"] = s.clusters;
-    statistics["rounds"] = s.rounds;
-    statistics["tetrahedra"] = s.tetrahedra;
-    out["statistics"] = statistics;
+    out["statistics"] = record_of(result.statistics);
     out["certificate"] = result.certificate;
     return out;
 }

@@ -10,6 +10,7 @@
 #include <memory>
 
 #include "arrays.h"
+#include "frontend/result_fields.h"
 #include "run.h"
 
 namespace certa::python {
@@ -40,6 +41,26 @@ py::dict to_python(const ConformingCheck& check);
 py::dict to_python(const SurfaceCheck& check);
 py::dict to_python(const ImplicitCheck& check);
 py::list to_python(const std::vector<ImplicitObstacle>& obstacles);
+
+/// The plain members of a result under their names.
+template <class Record>
+py::dict record_of(const Record& record) {
+    py::dict out;
+    frontend::visit_fields(record, [&](const char* name, const auto& value) {
+        if constexpr (std::is_same_v<std::decay_t<decltype(value)>, Point3>)
+            out[name] = point(value);
+        else
+            out[name] = py::cast(value);
+    });
+    return out;
+}
+/// The same, with the times of its stages.
+template <class Statistics>
+py::dict statistics_of(const Statistics& statistics) {
+    py::dict out = record_of(statistics);
+    out["stage_seconds"] = to_python(statistics.stage_seconds);
+    return out;
+}
 
 template <class T>
 py::object to_python(const std::optional<T>& value) {

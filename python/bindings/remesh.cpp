@@ -8,55 +8,6 @@
 namespace certa::python {
 namespace {
 
-py::dict statistics_of(const RemeshStatistics& s) {
-    py::dict out;
-    out["input_vertices"] = s.input_vertices;
-    out["input_triangles"] = s.input_triangles;
-    out["components"] = s.components;
-    out["euler_characteristic"] = s.euler_characteristic;
-    out["boundary_loops"] = s.boundary_loops;
-    out["feature_edges"] = s.feature_edges;
-    out["feature_curves"] = s.feature_curves;
-    out["corners"] = s.corners;
-    out["unused_vertices"] = s.unused_vertices;
-    out["degenerate_triangles"] = s.degenerate_triangles;
-    out["flipped_triangles"] = s.flipped_triangles;
-    out["non_manifold_edges"] = s.non_manifold_edges;
-    out["split_vertices"] = s.split_vertices;
-    out["wedges"] = s.wedges;
-    out["trisectors"] = s.trisectors;
-    out["umbilic_half_turns"] = s.umbilic_half_turns;
-    out["lines_min"] = s.lines_min;
-    out["lines_max"] = s.lines_max;
-    out["closed_lines"] = s.closed_lines;
-    out["spacing_error"] = s.spacing_error;
-    out["smoothing"] = s.smoothing;
-    out["rounds"] = s.rounds;
-    out["mended_regions"] = s.mended_regions;
-    out["mended_triangles"] = s.mended_triangles;
-    out["distance_bound"] = s.distance_bound;
-    out["vertices"] = s.vertices;
-    out["faces"] = s.faces;
-    out["triangles"] = s.triangles;
-    out["quads"] = s.quads;
-    out["t_nodes"] = s.t_nodes;
-    out["quad_share_with_t"] = s.quad_share_with_t;
-    out["quad_share_without_t"] = s.quad_share_without_t;
-    out["notes"] = s.notes;
-    out["stage_seconds"] = to_python(s.stage_seconds);
-    return out;
-}
-
-PolygonMesh polygons_of(const TriangleMesh& mesh) {
-    PolygonMesh polygons;
-    polygons.positions = mesh.positions;
-    for (const Triangle& t : mesh.triangles) {
-        polygons.corners.insert(polygons.corners.end(), t.begin(), t.end());
-        polygons.offsets.push_back(static_cast<std::uint32_t>(polygons.corners.size()));
-    }
-    return polygons;
-}
-
 struct RemeshRun {
     TriangulatedSurface input;
     RemeshResult result;
@@ -74,7 +25,7 @@ RemeshRun remesh_and_check(const MeshDocument& document, RemeshOptions options, 
     promises.feature_angle_radians = options.feature_angle_radians;
     promises.features = options.features;
     if (options.subdivide == 0) promises.error = options.error;  // subdivision smooths: no distance is promised then
-    finished.check = check_surface(finished.result.mesh, polygons_of(finished.input.mesh), promises, control);
+    finished.check = check_surface(finished.result.mesh, make_polygon_mesh(finished.input.mesh), promises, control);
     return finished;
 }
 

@@ -68,3 +68,10 @@ from ._results import (
 )
 
 __all__ = [name for name in dir() if not name.startswith("_")]
+
+# Tracebacks and help speak of certa.InputError, where users find it.
+for _name in __all__:
+    if isinstance(globals()[_name], type) or callable(globals()[_name]):
+        if getattr(globals()[_name], "__module__", "").startswith("certa._"):
+            globals()[_name].__module__ = "certa"
+del _name

@@ -95,6 +95,7 @@ class Expression:
     )
     __int__ = __index__ = __complex__ = __float__
     __round__ = __floor__ = __ceil__ = __trunc__ = _refuse("rounding", "it jumps; there is no smooth form")
+    __xor__ = __rxor__ = _refuse("^", "in Python it is no power: write x**2 (in a text, x^2)")
     __mod__ = __rmod__ = __floordiv__ = __rfloordiv__ = __divmod__ = __rdivmod__ = _refuse(
         "a remainder or whole quotient", "it jumps; sin and cos repeat smoothly"
     )

@@ -40,7 +40,10 @@ FunctionLike = Any
 Path = Union[str, "os.PathLike[str]"]
 
 _MESH_NAMES = (".off", ".obj", ".ply", ".stl", ".poly", ".smesh", ".node", ".ele", ".mesh", ".vtu", ".msh", ".csv")
-_ALONE = "nothing says what the mesh is to be checked against: give against="
+_ALONE = (
+    "nothing says what the mesh is to be checked against: give against= what it was made from or stands for (only "
+    "tetrahedra have promises that are theirs alone: their form and the Delaunay property)"
+)
 
 
 def _note(messages, where):
@@ -350,8 +353,8 @@ def check(
     Parameters
     ----------
     mesh : see the package's help; for a result of conform, remesh or implicit nothing else is needed
-    against : mesh, or function (str, certa.Expression, Python function)
-        what the mesh was made from or stands for
+    against : mesh, or function (str, certa.Expression, Python function), optional
+        what the mesh was made from or stands for; of other tetrahedra, without it, form and Delaunay property are decided
     certificate : str, optional
         of `implicit`: verify a triangle mesh by it
     box : low and high corner, optional
@@ -373,9 +376,9 @@ def check(
         against = mesh.input
     if against is None and isinstance(mesh, ImplicitResult):
         against, certificate = mesh.function, certificate or mesh.certificate or None
-    if against is None:
-        raise TypeError(_ALONE + "what it was made from or stands for")
     document = as_document(mesh)
+    if against is None:
+        return _check_alone(document, certificate, box, repair or triangulate, options, watched)
     if certificate is not None or _is_function(against):
         given = {name: value for name, value in options.items() if value is not None}
         if given:
@@ -384,7 +387,7 @@ def check(
         if certificate is not None:
             values = _certa.check_implicit(document, source.text, certificate, *watched)
             return ImplicitCheck(**values)
-        corners = box_of(box, around=document.positions)
+        corners = None if box is None else box_of(box)
         values = _certa.check_mesh_against(document, source.text, corners, *watched)
         values["obstacles"] = [Obstacle(*obstacle) for obstacle in values["obstacles"]]
         return ImplicitMeshCheck(**values)
@@ -396,7 +399,17 @@ def check(
                                          bool(triangulate), *watched)  # fmt: skip
         promises = ["well-formed", "delaunay", "conforming", "faithful", "labelled"]
         return ConformingCheck(**values, promises=promises + (["gabriel"] if options.get("gabriel") else []))
+    if len(other.tetrahedra):
+        raise TypeError("against is a tetrahedral mesh: a surface mesh is checked against a surface")
     return SurfaceCheck(**_certa.check_surface(document, other, _only(options, "surface_check"), *watched))
+
+
+def _check_alone(document, certificate, box, mended, options, watched):
+    """What can be said of tetrahedra without what they were made from."""
+    if not len(document.tetrahedra) or certificate is not None or box is not None or mended:
+        raise TypeError(_ALONE)
+    values = _certa.check_delaunay_mesh(document, _only(options, "conforming_check"), *watched)
+    return ConformingCheck(**values, promises=["well-formed", "delaunay"] + (["gabriel"] if options.get("gabriel") else []))
 
 
 def _is_function(against):

@@ -94,7 +94,7 @@ def elements(values, width, what):
 def polygons(values, what="faces"):
     """(corners, offsets) of a rectangular array or of rows of any length."""
     if not hasattr(values, "__array__"):
-        if isinstance(values, (str, bytes, dict)) or not hasattr(values, "__iter__"):
+        if isinstance(values, (str, bytes, dict, set, frozenset)) or not hasattr(values, "__iter__"):
             raise TypeError(f"{what}: expected rows of indices, not {type(values).__name__}")
         values = list(values)
         lengths = [len(row) if hasattr(row, "__len__") else -1 for row in values]
@@ -108,7 +108,8 @@ def polygons(values, what="faces"):
     if array.size == 0:
         array = array.reshape(0, 3)
     if array.ndim != 2:
-        raise ValueError(f"{what}: expected rows of indices, one row a polygon, not shape {array.shape}")
+        hint = f"; {what}.reshape(-1, 3) may be meant" if array.ndim == 1 and array.size % 3 == 0 else ""
+        raise ValueError(f"{what}: expected rows of indices, one row a polygon, not shape {array.shape}{hint}")
     rows, width = array.shape
     return array.reshape(-1), numpy.arange(rows + 1, dtype=numpy.int64) * width
 

@@ -100,17 +100,8 @@ def watch(progress, threads):
     return progress, count
 
 
-def box_of(box, around=None):
-    """Six numbers, low and high corner; without a box, one around points with room on each side."""
-    if box is None:
-        if len(around) == 0:
-            raise ValueError("an empty mesh has no place: give the box")
-        low, high = around.min(axis=0), around.max(axis=0)
-        size = (high - low).max()
-        # No power of 2 divides these: grids are not aligned with the cells of the proof then.
-        low = low - size * numpy.array([0.1537, 0.1619, 0.1471])
-        high = high + size * numpy.array([0.1723, 0.1511, 0.1673])
-        return numpy.concatenate([low, high])
+def box_of(box):
+    """Six numbers, low and high corner."""
     corners = _inputs.doubles(numpy.asarray(box, dtype=object).reshape(-1).tolist(), 0, "box")
     if corners.shape != (6,):
         raise ValueError(f"box: expected a low and a high corner, six numbers in all, not {len(corners)}")

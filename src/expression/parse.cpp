@@ -391,6 +391,15 @@ ExpressionError located(const Refusal& refusal, std::string_view text, const std
                            text.substr(first, last - first));
 }
 
+/// What somebody probably meant who wrote another language's or a textbook's signs.
+const char* way_out(std::string_view text, std::size_t offset) {
+    const char at = offset < text.size() ? text[offset] : ' ', before = offset > 0 ? text[offset - 1] : ' ';
+    if (at == '*' && before == '*') return "; powers are written x^2";
+    if (at == '=') return "; the surface is where the expression is 0: for a = b write a - (b)";
+    if (static_cast<unsigned char>(at) >= 0x80) return "; signs beyond ASCII are not read: powers are written x^2";
+    return "";
+}
+
 }  // namespace
 }  // namespace certa::expression
 
@@ -406,7 +415,7 @@ Expression parse_expression(std::string_view text, const std::string& name) {
             pegtl::parse<grammar::text, Action, grammar::control>(input, builder);
         } catch (const pegtl::parse_error& error) {
             const std::size_t offset = error.positions().front().byte;
-            const std::string reason(error.message());
+            const std::string reason = std::string(error.message()) + way_out(settled, offset);
             if (offset >= settled.size()) refuse(offset, reason + "; the text ends here");
             refuse(offset, reason);
         }

@@ -7,6 +7,7 @@
 #include <certa/implicit_mesh.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "core/vector3.h"
@@ -189,6 +190,20 @@ bool is_usable(const TriangleMesh& mesh) {
 
 }  // namespace
 }  // namespace implicit
+
+std::array<Point3, 2> find_box_around(const TriangleMesh& mesh) {
+    if (mesh.positions.empty())
+        throw InputError({{DefectKind::empty_input, {}, {}, "an empty mesh has no place: give the box"}});
+    Point3 low = mesh.positions.front(), high = low;
+    for (const Point3& p : mesh.positions) {
+        low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+        high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+    }
+    // No power of 2 divides these: grids are not aligned with the cells of the proof then.
+    const double size = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    return {{{low.x - 0.1537 * size, low.y - 0.1619 * size, low.z - 0.1471 * size},
+             {high.x + 0.1723 * size, high.y + 0.1511 * size, high.z + 0.1673 * size}}};
+}
 
 ImplicitMeshCheck check_mesh_against(const TriangleMesh& mesh, std::string_view function, const Point3& low,
                                      const Point3& high, const ImplicitOptions& options, const RunControl& control) {

@@ -147,6 +147,18 @@ class Usage(CommandTest):
                 self.assertTrue(self.expect(2, *arguments).strip())
         self.expect_no_strays()
 
+    def test_misspelt_names_are_recognised(self):
+        for arguments, words in (
+            (["confrom", "cube.off"], "did you mean 'conform'?"),
+            (["frobnicate"], "'frobnicate' is no command"),
+            (["conform", "cube.off", "--gabrial"], "did you mean '--gabriel'?"),
+            (["conform", "cube.off", "--alfa=0.3"], "did you mean '--alpha'?"),
+            (["implicit", "-x"], "goes after --"),
+        ):
+            with self.subTest(arguments=arguments):
+                self.assertIn(words, self.expect(2, *arguments))
+        self.assertIn("no file of this name", self.expect(3, "implicit", "torus.txt"))
+
     def test_help_has_an_example_and_every_option_a_line(self):
         for command in ("conform", "implicit", "check", "info", "convert"):
             done = self.run_certa(command, "--help")

@@ -110,7 +110,9 @@ INSTANTIATE_TEST_SUITE_P(
         Wrong{"r = x +\n\n  ) * y\nr", 3, 3, "expected a number"},
         Wrong{"smooth_union(x, y, 0)", 1, 1, "must be a positive constant"},
         Wrong{"smooth_union(x, y, z)", 1, 1, "must be a positive constant"},
-        Wrong{"x \xe2\x88\x92 y", 1, 3, "an operator"}, Wrong{"x ** y", 1, 4, "expected a number"},
+        Wrong{"x \xe2\x88\x92 y", 1, 3, "an operator"},
+        Wrong{"x ** y", 1, 4, "expected a number, a variable, a function or '('; powers are written x^2"},
+        Wrong{"x^2 + y^2 = 1", 1, 11, "for a = b write a - (b)"}, Wrong{"x\xc2\xb2", 1, 2, "powers are written x^2"},
         Wrong{"x = = y", 1, 5, "expected a number"}));
 
 TEST(Refusal, ShowsTheLineAndACaret) {

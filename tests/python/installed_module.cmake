@@ -17,7 +17,7 @@ if(SHARED)
   file(REMOVE ${BUILD}/install_manifest_Unspecified.txt)
 endif()
 file(RENAME ${WORK}/first ${WORK}/second)
-run(${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH PYTHONDONTWRITEBYTECODE=1 PYTHONPATH=${WORK}/second/${FOLDER}
+run(${CMAKE_COMMAND} -E env --unset=LD_LIBRARY_PATH --unset=PYTHONDONTWRITEBYTECODE PYTHONPATH=${WORK}/second/${FOLDER}
   ${CMAKE_COMMAND} -E chdir ${WORK} ${PYTHON} ${SOURCE}/installed_module.py ${WORK}/second/${FOLDER})
 if(NOT output MATCHES "6 tetrahedra, proved: delaunay")
   message(FATAL_ERROR "the installed module printed: ${output}")

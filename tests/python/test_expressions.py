@@ -125,6 +125,8 @@ def test_values_and_gradients_of_arrays():
         (lambda x, y, z: math.floor(x), "jumps"),
         (lambda x, y, z: x % 1, "jumps"),
         (lambda x, y, z: x // 2, "jumps"),
+        (lambda x, y, z: x ^ 2, r"x\*\*2"),
+        (lambda x, y, z: 2 ^ x, r"x\*\*2"),
         (lambda x, y, z: None, "return"),
         (lambda x, y, z: [x, y], "list"),
         (lambda x, y, z: x + math.nan, "nan"),

@@ -139,6 +139,33 @@ def test_a_wrong_mesh_fails_its_check():
     assert not check.ok and check.violations[0].message
 
 
+def test_tetrahedra_have_promises_of_their_own(tmp_path):
+    positions, triangles = icosphere(2)
+    result = certa.conform(positions, triangles)
+    certa.write(tmp_path / "ball.mesh", result)
+    for mesh in (tmp_path / "ball.mesh", str(tmp_path / "ball.mesh"), certa.MeshDocument(result.positions, tetrahedra=result.tetrahedra)):
+        check = certa.check(mesh)
+        assert check.ok and check.promises == ["well-formed", "delaunay"]
+        assert check.tetrahedra_checked == len(result.tetrahedra)
+    # A vertex moved through its neighbours: some circumsphere holds another vertex, or a tetrahedron is turned over.
+    moved = result.positions.copy()
+    moved[0] *= 0.9
+    spoiled = certa.check(certa.MeshDocument(moved, tetrahedra=result.tetrahedra))
+    assert not spoiled.ok and {v.promise for v in spoiled.violations} <= {"well-formed", "delaunay"}
+    assert certa.check(tmp_path / "ball.mesh", gabriel=True).promises[-1] == "gabriel"
+
+
+def test_a_surface_alone_has_nothing_to_be_checked_against():
+    for options in ({}, {"certificate": "{}"}, {"box": [0, 0, 0, 1, 1, 1]}):
+        with pytest.raises(TypeError, match="against="):
+            certa.check(icosphere(1), **options)
+    ball = certa.conform(*icosphere(1))
+    with pytest.raises(TypeError, match="against="):
+        certa.check(ball.document, repair=True)
+    with pytest.raises(TypeError, match="tetrahedral"):
+        certa.check(icosphere(1), against=ball.document)
+
+
 @pytest.mark.parametrize("name", ["m.vtu", "m.mesh", "m.msh"])
 def test_files_read_back(tmp_path, name):
     result = certa.conform(CUBE / 3, CUBE_FACES)

@@ -65,6 +65,14 @@ def test_the_stub_has_every_name_and_argument():
             assert name in others
 
 
+def test_names_are_where_users_find_them():
+    for name in certa.__all__:
+        assert getattr(getattr(certa, name), "__module__", "certa") in ("certa", "builtins"), name
+    with pytest.raises(certa.InputError) as caught:
+        certa.conform([], [])
+    assert repr(type(caught.value)) == "<class 'certa.InputError'>"
+
+
 def test_every_public_thing_is_documented():
     for name in certa.__all__:
         value = getattr(certa, name)
