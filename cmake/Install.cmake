@@ -65,5 +65,10 @@ if(PROJECT_IS_TOP_LEVEL)
   endif()
   # What links the static library, and what the module imports.
   set(CPACK_DEBIAN_PACKAGE_RECOMMENDS "libtbb-dev, libmpfi-dev, libgmp-dev, libcgal-dev, python3-numpy")
+  if(CERTA_BUILD_PYTHON)
+    configure_file(${PROJECT_SOURCE_DIR}/cmake/prerm.in ${PROJECT_BINARY_DIR}/debian/prerm @ONLY
+      FILE_PERMISSIONS OWNER_READ OWNER_WRITE OWNER_EXECUTE GROUP_READ GROUP_EXECUTE WORLD_READ WORLD_EXECUTE)
+    set(CPACK_DEBIAN_PACKAGE_CONTROL_EXTRA ${PROJECT_BINARY_DIR}/debian/prerm)
+  endif()
   include(CPack)
 endif()

@@ -1,4 +1,5 @@
-# Removes what the last installation from this build folder wrote: the files of its manifest, then folders left empty.
+# Removes what the last installation from this build folder wrote: the files of its manifest, what Python compiled beside
+# them, then folders left empty.
 if(NOT EXISTS ${MANIFEST})
   message(FATAL_ERROR "Nothing to uninstall: ${MANIFEST} does not exist. Run the install target first.")
 endif()
@@ -17,6 +18,9 @@ list(REMOVE_DUPLICATES folders)
 list(SORT folders ORDER DESCENDING)
 foreach(folder IN LISTS folders)
   # Only folders of our own name: a prefix's shared folders stay.
+  if(folder MATCHES "/certa$")
+    file(REMOVE_RECURSE ${folder}/__pycache__)
+  endif()
   while(folder MATCHES "/[Cc]erta$|/[Cc]erta/")
     file(GLOB rest LIST_DIRECTORIES true ${folder}/*)
     if(rest OR NOT IS_DIRECTORY ${folder})
