@@ -4,6 +4,7 @@ somewhere.
 
 run_documents.py BIN PYTHONPATH DOCUMENT...   (PYTHONPATH may be empty: then `python` blocks are left out)
 run_documents.py --links DOCUMENT...          (runs nothing)
+run_documents.py --program DOCUMENT FOLDER    (runs nothing: writes the `cpp` block to main.cpp, the `cmake` block to CMakeLists.txt)
 run_documents.py --lines BIN DOCUMENT         (each `certa ...` line of blocks without a language, on made-up files)
 """
 import os
@@ -80,6 +81,14 @@ def run_lines(binary, document):
         return failures, len(lines)
 
 
+def write_program(document, folder):
+    """The only block of each language, as a project."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for wanted, name in (("cpp", "main.cpp"), ("cmake", "CMakeLists.txt")):
+        (content,) = [text for language, _, text in blocks_of(document.read_text()) if language == wanted]
+        (folder / name).write_text(content)
+
+
 def report(failures, count, claim):
     print("\n".join(failures) or f"{count} {claim}")
     sys.exit(bool(failures))
@@ -89,6 +98,9 @@ def main():
     if sys.argv[1] == "--links":
         documents = [pathlib.Path(name) for name in sys.argv[2:]]
         report([f for d in documents for f in check_links(d, d.read_text())], len(documents), "documents, all links lead somewhere")
+    if sys.argv[1] == "--program":
+        write_program(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))
+        sys.exit(0)
     if sys.argv[1] == "--lines":
         failures, count = run_lines(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))
         report(failures or ([] if count else ["no lines found"]), count, "lines, each ends well")
