@@ -137,6 +137,21 @@ class Browser:
             time.sleep(0.05)
         self.settle()
 
+    def enter_frame(self):
+        """Makes calls go to the only frame of the page that has a process of its own, as sandboxed ones have."""
+        deadline = time.monotonic() + self.timeout
+        while True:
+            targets = self.call("Target.getTargets", page=False)["targetInfos"]
+            frames = [target["targetId"] for target in targets if target["type"] == "iframe"]
+            if len(frames) == 1:
+                break
+            if time.monotonic() > deadline:
+                raise RuntimeError(f"{len(frames)} frames of their own")
+            time.sleep(0.05)
+        self.session = self.call("Target.attachToTarget", {"targetId": frames[0], "flatten": True}, page=False)["sessionId"]
+        for domain in ("Runtime", "Log"):
+            self.call(f"{domain}.enable")
+
     def settle(self):
         """Waits for two frames: what was asked for is on the screen."""
         self.evaluate("new Promise(done => requestAnimationFrame(() => requestAnimationFrame(done)))")
@@ -155,5 +170,6 @@ class Browser:
         self.call("Input.dispatchMouseEvent", {"type": kind, "x": x, "y": y, "button": button, "buttons": buttons, **more})
 
     def key(self, text):
-        self.call("Input.dispatchKeyEvent", {"type": "keyDown", "key": text, "text": text})
+        typed = {"text": text} if len(text) == 1 else {}  # arrows and the like type nothing
+        self.call("Input.dispatchKeyEvent", {"type": "keyDown", "key": text, **typed})
         self.call("Input.dispatchKeyEvent", {"type": "keyUp", "key": text})

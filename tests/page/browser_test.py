@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Pages as they look in headless Chromium: what is drawn is counted in elements and pixels and compared with the input.
 
-Run by ctest as `browser_test.py CERTA`; skips with a message where there is no Chromium.
+Run by ctest as `browser_test.py CERTA [FOLDER_OF_PYTHON_PACKAGE]`; skips with a message where there is no Chromium.
 """
 
 import itertools
@@ -17,6 +17,7 @@ sys.path.insert(0, os.path.join(os.path.dirname(os.path.abspath(__file__)), ".."
 from browser import Browser, find_chromium  # noqa: E402
 
 CERTA = sys.argv.pop(1) if len(sys.argv) > 1 else "certa"
+MODULE = sys.argv.pop(1) if len(sys.argv) > 1 and os.path.isdir(sys.argv[1]) else None  # folder of the Python package
 
 PLATE_RINGS = """16 3 0 0
 1 0 0 0
@@ -484,6 +485,87 @@ class PageTest(unittest.TestCase):
         while not condition():
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.05)
+
+    def test_keys_do_what_the_panel_says(self):
+        state = lambda: self.browser.evaluate("[certa.view.yaw, certa.view.pitch, certa.view.distance]")
+
+        def press(key):
+            self.browser.key(key)
+            self.browser.settle()
+            return self.browser.report(), state()
+
+        self.open("file=2&clip=off&edges=all&theme=light")
+        start = state()
+        turned = press("ArrowLeft")[1]
+        self.assertNotEqual(turned[0], start[0])
+        self.assertNotEqual(press("ArrowUp")[1][1], turned[1])
+        closer = press("+")[1]
+        self.assertLess(closer[2], start[2])
+        self.assertAlmostEqual(press("-")[1][2], start[2])
+        self.assertEqual(press("r")[1], start)
+        self.assertEqual(press("x")[1][:2], [90, 0])
+        self.assertEqual(press("z")[1][:2], [0, 90])
+        self.assertEqual([press("e")[0]["edges"] for _ in range(3)], ["none", "sharp", "all"])
+        whole = self.browser.report()["tetrahedra"]
+        self.assertLess(press("c")[0]["tetrahedra"], whole)
+        self.assertEqual(press("c")[0]["tetrahedra"], whole)
+        bright = self.browser.evaluate("getComputedStyle(document.body).backgroundColor + document.documentElement.dataset.theme")
+        press("d")
+        self.assertNotEqual(self.browser.evaluate("getComputedStyle(document.body).backgroundColor + document.documentElement.dataset.theme"), bright)
+        shown = lambda: self.browser.evaluate("document.getElementById('panel').getBoundingClientRect().height > 100")
+        self.assertTrue(shown())
+        press("h")
+        self.assertFalse(shown())
+        press("h")
+        self.assertTrue(shown())
+        self.assertEqual(press("n")[0]["name"], "torus.ply")
+        self.assertEqual(press("2")[0]["name"], "block.mesh")
+
+    def test_more_than_200000_triangles_are_followed(self):
+        """What scripts take of a frame; the drawing itself is the graphics card's, here the processor's, and not judged."""
+        self.write("large.ply", torus(460, 220))
+        report = self.open("", self.make("large.html", "large.ply"))
+        self.assertEqual(report["triangles"], 202400)
+        self.assertEqual(report["edges"], "sharp")  # all edges would hide the surface
+        before = self.browser.evaluate("certa.view.yaw")
+        for kind, x, y in (("mousePressed", 300, 300), ("mouseMoved", 380, 330), ("mouseReleased", 380, 330)):
+            self.browser.mouse(kind, x, y, button="left", buttons=1, clickCount=1)
+        self.browser.settle()
+        self.assertNotEqual(self.browser.evaluate("certa.view.yaw"), before)
+        self.assertGreater(self.browser.report()["covered"], 50000)
+        times = self.browser.evaluate("(() => { const times = []; for (let i = 0; i < 9; ++i) { const start = performance.now();"
+                                      "certa.view.turn(1, 0); certa.stage.draw(certa.view, 'sharp'); times.push(performance.now() - start); } return times.sort((a, b) => a - b); })()")
+        print(f"202,400 triangles: scripts take {times[4]:.2f} ms a frame (median of 9)")
+        self.assertLess(times[4], 50)  # some 0.2 ms on an idle machine: nothing is computed anew for a frame
+        clipped = self.do("location.hash = 'clip=x,0.5'; new Promise(done => setTimeout(done, 30))")
+        self.assertLess(abs(clipped["triangles"] - 101200), 2000)
+
+    def test_a_notebook_shows_the_page_inline(self):
+        """What Jupyter puts into the output of a cell: the page in a sandboxed frame that has no origin and no address."""
+        if MODULE is None:
+            self.skipTest("the Python module is not built")
+        done = subprocess.run([sys.executable, "-c", "import certa, sys; print(certa.view('torus.ply', 'block.mesh', height=500)._repr_html_())"],
+                              capture_output=True, text=True, cwd=self.folder, env=dict(os.environ, PYTHONPATH=MODULE))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.write("notebook.html", '<!DOCTYPE html><meta charset="utf-8"><body style="margin: 0"><p>In [1]: certa.view(...)</p><div class="jp-RenderedHTMLCommon">'
+                   + done.stdout + "</div><p>In [2]:</p></body>")
+        type(self).loaded = False
+        session = self.browser.session
+        self.browser.call("Page.navigate", {"url": "file://" + os.path.join(self.folder, "notebook.html")})
+        try:
+            self.browser.enter_frame()
+            self.wait(lambda: self.browser.evaluate("Boolean(window.certa)"))
+            self.browser.settle()
+            report = self.browser.report()
+            self.assertEqual((report["triangles"], report["height"]), (2304, 500))
+            self.assertGreater(report["covered"], 20000)
+            self.assertEqual(self.press("block.mesh")["counts"]["tetrahedra"], 384)
+            self.browser.key("1")
+            self.browser.settle()
+            self.assertEqual(self.browser.report()["name"], "torus.ply")
+            self.browser.evaluate("new Promise(done => setTimeout(done, 250))")  # an error when it writes the address would come now
+        finally:
+            self.browser.session = session
 
     def test_small_screens_and_touch(self):
         self.browser.resize(390, 780, 2)
