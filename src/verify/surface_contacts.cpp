@@ -119,14 +119,12 @@ bool meet_beyond_shared(const std::vector<Point3>& positions, std::array<std::ui
 int crossing(const Point3& from, const Point3& to, const Corners& t) {
     const int start = orientation(t[0], t[1], t[2], from), end = orientation(t[0], t[1], t[2], to);
     if (start * end > 0) return 0;
-    int sum = 0;
     bool zero = start == 0 || end == 0, positive = false, negative = false;
     for (std::size_t i = 0; i < 3; ++i) {
         const int side = orientation(from, to, t[i], t[(i + 1) % 3]);
         zero = zero || side == 0;
         positive = positive || side > 0;
         negative = negative || side < 0;
-        sum += side;
     }
     if (positive && negative) return 0;
     if (zero) return 2;
