@@ -31,7 +31,11 @@ PolygonMesh surface_of(const MeshDocument& document, const char* name) {
 
 TriangleMesh triangles_of(const MeshDocument& document) {
     surface_of(document, "mesh");
-    return make_triangle_mesh(document);
+    try {
+        return make_triangle_mesh(document);
+    } catch (const IoError& error) {  // no file is at fault here
+        throw py::value_error("mesh: " + error.reason() + ", to be compared with a function");
+    }
 }
 
 py::dict conforming(const py::object& object, const py::object& against, const py::dict& given, bool repair,

@@ -1,6 +1,8 @@
 // Facets that are not planar become triangles: those of the constrained Delaunay triangulation seen along the axis
-// nearest to the normal. The first triangle takes the facet's place, the others follow after the last facet.
+// nearest to the normal, or along another one where its sides cross so seen. The first triangle takes the facet's
+// place, the others follow after the last facet.
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "conforming/build_complex.h"
@@ -26,6 +28,25 @@ double deviation_of(const EditableFacet& facet, const EditableComplex& complex, 
     return largest;
 }
 
+bool is_cut(const FlatFacet& flat) {
+    return flat.state != FlatState::crossing && !flat.triangles.empty() && flat.holes_outside.empty();
+}
+
+/// The facet seen along the axis nearest to its normal. A warped facet may cross itself so seen, and not along the
+/// normal; one of the other axes, by the normal's components, may see it as it is then.
+FlatFacet flatten(const PiecewiseLinearComplex& input, std::uint32_t facet, const Point3& normal) {
+    FlatFacet nearest = delaunay::flatten_facet(input, facet, Projection(normal));
+    if (is_cut(nearest)) return nearest;
+    std::array<Point3, 3> along{{{normal.x, 0.0, 0.0}, {0.0, normal.y, 0.0}, {0.0, 0.0, normal.z}}};
+    std::sort(along.begin(), along.end(), [](const Point3& a, const Point3& b) { return dot(a, a) > dot(b, b); });
+    for (const Point3& axis : along) {
+        if (dot(axis, axis) == 0.0) continue;
+        FlatFacet other = delaunay::flatten_facet(input, facet, Projection(axis));
+        if (is_cut(other)) return other;
+    }
+    return nearest;
+}
+
 }  // namespace
 
 RepairedComplex triangulate_facets(const PiecewiseLinearComplex& input, double planarity) {
@@ -38,8 +59,8 @@ RepairedComplex triangulate_facets(const PiecewiseLinearComplex& input, double p
         const Frame frame = build_frame(input, f);
         const double deviation = deviation_of(edited.facets[f], edited, frame);
         if (deviation <= planarity) continue;
-        const FlatFacet flat = delaunay::flatten_facet(input, f, Projection(frame.normal));
-        if (flat.state == FlatState::crossing || flat.triangles.empty() || !flat.holes_outside.empty()) continue;
+        const FlatFacet flat = flatten(input, f, frame.normal);
+        if (!is_cut(flat)) continue;
         result.repairs.push_back({DefectKind::non_planar_facet,
                                   {{ElementKind::facet, f}},
                                   frame.origin,

@@ -166,6 +166,15 @@ void add_bound(std::vector<Field>& fields, const char* name, const std::vector<A
     add_field(fields, name, values);
 }
 
+/// Why there is no surface.
+std::string describe_nothing(const MeshDocument& document, const std::optional<std::int64_t>& region) {
+    if (document.tetrahedra.empty() || !region) return "there are no polygons: there is no surface";
+    std::string regions;
+    for (const std::int64_t known : find_regions(document))
+        regions += (regions.empty() ? "" : ", ") + std::to_string(known);
+    return "no tetrahedron is of region " + std::to_string(*region) + "; there are regions " + regions;
+}
+
 }  // namespace
 
 TriangulatedSurface triangulate(const PolygonMesh& mesh) {
@@ -193,7 +202,7 @@ TriangulatedSurface triangulate(const MeshDocument& document, const std::optiona
         add_polygons(surface, complex.corners, complex.polygon_offsets);
     }
     if (surface.mesh.triangles.empty())
-        throw InputError({{DefectKind::empty_input, {}, {}, "there are no polygons, so there is no curvature"}});
+        throw InputError({{DefectKind::empty_input, {}, {}, describe_nothing(document, region)}});
     return surface;
 }
 

@@ -239,5 +239,17 @@ TEST(Triangulate, CutsWhatIsNotPlanar) {
     EXPECT_THAT(result.repairs[0].message, HasSubstr("cut into 2 triangles"));
 }
 
+// A quad of a remeshed sphere, convex along its normal, which is nearest to y; seen along y its sides cross.
+TEST(Triangulate, CutsWhatCrossesItselfAlongTheNearestAxis) {
+    Builder warped({{-0.03121555, -0.19302615, 0.88357516},
+                    {-0.16881552, -0.11040324, 0.88759386},
+                    {-0.34678645, -0.0263303, 0.83566188},
+                    {-0.35283226, -0.02883764, 0.83694136}});
+    warped.facet({{0, 1, 2, 3}});
+    const RepairedComplex result = repair_complex(warped.complex, {.triangulate = true});
+    EXPECT_EQ(result.complex.facet_count(), 2u);
+    EXPECT_THAT(defects_of(result.complex), IsEmpty());
+}
+
 }  // namespace
 }  // namespace certa::test

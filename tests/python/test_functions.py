@@ -52,6 +52,13 @@ def test_measures_of_regions():
         certa.curvature(CUBE, CUBE_FACES, region=[6])
 
 
+def test_regions_of_solids():
+    ball = certa.conform(*icosphere(1))
+    assert numpy.isclose(certa.curvature(ball, solid=1).total.gaussian, 4 * numpy.pi)
+    with pytest.raises(certa.InputError, match="no tetrahedron is of region 7; there are regions 1"):
+        certa.curvature(ball, solid=7)
+
+
 def test_remesh_is_checked_and_says_so(few):
     assert few.outcome == "done" and few.check.ok
     assert "topology" in few.proved and "embedded" in few.proved
@@ -153,6 +160,17 @@ def test_tetrahedra_have_promises_of_their_own(tmp_path):
     spoiled = certa.check(certa.MeshDocument(moved, tetrahedra=result.tetrahedra))
     assert not spoiled.ok and {v.promise for v in spoiled.violations} <= {"well-formed", "delaunay"}
     assert certa.check(tmp_path / "ball.mesh", gabriel=True).promises[-1] == "gabriel"
+
+
+def test_functions_are_compared_with_triangles():
+    with pytest.raises(ValueError, match="polygon 1 has 4 corners"):
+        certa.check((CUBE, CUBE_FACES), against="x^2 + y^2 + z^2 - 1")
+
+
+def test_a_coarse_ball_becomes_tetrahedra():
+    """One of its quads crosses itself seen along the axis nearest to its normal."""
+    few = certa.remesh(certa.implicit("x^2 + y^2 + z^2 - 1", error="3%"), vertices=100)
+    assert certa.conform(few, triangulate=True).check.ok
 
 
 def test_a_surface_alone_has_nothing_to_be_checked_against():
