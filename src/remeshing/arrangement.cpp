@@ -600,8 +600,15 @@ void split_in_middle(Graph& graph, const Network& network, Index e) {
     const GraphEdge edge = graph.edges[e];
     const double at = 0.5 * (edge.from + edge.to);
     SurfacePlace place;
-    const Point3 point = edge.line != no_index ? point_along(network, edge.line, at, place)
-                                               : point_along_curve(network.mesh(), edge.curve, at, place);
+    Point3 point = edge.line != no_index ? point_along(network, edge.line, at, place)
+                                         : point_along_curve(network.mesh(), edge.curve, at, place);
+    const SurfacePlace &a = graph.nodes[edge.a].place, &b = graph.nodes[edge.b].place;
+    if (edge.line != no_index && std::floor(edge.from) == std::floor(edge.to) && a.face == b.face) {
+        // Within a chord, places along the line are ranks only.
+        place.face = a.face;
+        for (std::size_t i = 0; i < 3; ++i) place.weights[i] = 0.5 * (a.weights[i] + b.weights[i]);
+        point = point_at(network.mesh(), place);
+    }
     const Index n = graph.split(e, point, place, at);
     if (edge.curve == no_index) return;
     graph.nodes[n].curve = edge.curve;

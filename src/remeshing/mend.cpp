@@ -1,9 +1,10 @@
 // Mending by regions of the graph's faces.
 //
 // Each round makes the whole result anew from the same polygons and a set of faces: connected faces are a region, which
-// the patch of the input replaces. Then everything is judged. Broken polygons join the set; a broken patch is first
-// taken unfirst_try, then its region grows by a ring. The set only grows, so this ends: at the latest when whole
-// components are the input.
+// the input inside replaces, thinned out. Sides of the region are cut where they pass edges of the input; the polygons
+// around take over those corners that are left. Then everything is judged. Broken polygons join the set; a broken patch
+// is thinned out less, then not at all, then its region grows. The set only grows, so this ends: at the latest when
+// whole components are the input.
 #include "remeshing/mend.h"
 
 #include <algorithm>
@@ -24,10 +25,6 @@ std::vector<std::uint8_t> fixed_vertices(const WorkMesh& mesh) {
     std::vector<std::uint8_t> is_fixed(mesh.points.size(), 0);
     for (Index v = 0; v < mesh.points.size(); ++v) is_fixed[v] = mesh.is_corner[v] ? 1 : 0;
     for (const Index v : mesh.minor_corners) is_fixed[v] = 1;
-    for (const Index e : mesh.minor_edges) {
-        const Index h = mesh.edge_halfedges[e];
-        is_fixed[mesh.start_of(h)] = is_fixed[mesh.end_of(h)] = 1;
-    }
     return is_fixed;
 }
 
@@ -73,7 +70,6 @@ public:
           out_(mesh),
           control_(control),
           is_fixed_(fixed_vertices(mesh_)),
-          ground_(base_),
           patcher_(layout) {
         level_.assign(patcher_.face_count(), none);
     }
@@ -94,10 +90,11 @@ public:
     }
 
 private:
-    enum Level : std::uint8_t { none, first_try, second_try };
+    enum Level : std::uint8_t { none, first_try, second_try, exact };
     struct Region {
         std::vector<Index> faces;
-        bool is_second = false, is_whole = false;
+        std::uint8_t level = first_try;
+        bool is_whole = false;
         std::size_t triangles = 0;
     };
 
@@ -115,7 +112,7 @@ private:
                 region_of_[seed] = number;
                 for (std::size_t at = 0; at < region.faces.size(); ++at) {
                     const Index f = region.faces[at];
-                    region.is_second = region.is_second || level_[f] == second_try;
+                    region.level = std::max(region.level, level_[f]);
                     for (const Index h : layout_.faces[f])
                         if (const Index g = patcher_.face_beside(h ^ 1U);
                             g != no_index && level_[g] != none && region_of_[g] == no_index) {
@@ -138,49 +135,99 @@ private:
 
     std::vector<Point3> points_of(const RegionPatch& patch) const {
         std::vector<Point3> points;
-        for (const Index v : patch.outer) points.push_back(base_.points[v]);
+        for (const Index v : patch.outer) points.push_back(node_point(v));
         for (const RegionVertex& v : patch.inner) points.push_back(v.point);
         return points;
     }
+    /// Where a corner of a region lies on the input, whatever placement has done.
+    const Point3& node_point(Index vertex) const { return layout_.graph.nodes[layout_.nodes[vertex]].point; }
 
     const RegionPatch* find_patch(const Region& region) {
-        const auto key = std::pair{region.faces, region.is_second};
+        const auto key = std::pair{region.faces, region.level};
         auto found = patches_.find(key);
         if (found == patches_.end()) {
-            std::optional<RegionPatch> patch = patcher_.make(ground_, region.faces, region.is_second ? 0.25 : 0.08);
-            if (patch) {
-                ThinningRule rule;
-                rule.tolerance = (region.is_second ? 0.3 : 1.0) * rule_.tolerance;
-                rule.is_fixed.assign(patch->outer.size() + patch->inner.size(), 1);
-                for (std::size_t i = 0; i < patch->inner.size(); ++i) {
-                    const RegionVertex& v = patch->inner[i];
-                    rule.is_fixed[patch->outer.size() + i] =
-                        v.kind == VertexKind::corner || (v.source != no_index && is_fixed_[v.source] != 0) ? 1 : 0;
-                }
-                thin_out(*patch, points_of(*patch), judge_, rule, control_);
-            }
+            std::optional<RegionPatch> patch = patcher_.make(region.faces);
+            if (patch) thin(*patch, region.level);
             found = patches_.emplace(key, std::move(patch)).first;
         }
         return found->second ? &*found->second : nullptr;
+    }
+    void thin(RegionPatch& patch, std::uint8_t level) const {
+        constexpr std::array<double, 4> parts{0.0, 1.0, 0.3, 1e-4}, shares{0.0, 0.1, 0.03, 0.0};
+        ThinningRule rule;
+        rule.tolerance = parts[level] * rule_.tolerance;
+        rule.side_tolerance = parts[level] * rule_.side_tolerance;
+        rule.side_share = shares[level];
+        rule.is_fixed.assign(patch.outer.size() + patch.inner.size(), 1);
+        for (std::size_t i = 0; i < patch.inner.size(); ++i) {
+            const RegionVertex& v = patch.inner[i];
+            rule.is_fixed[patch.outer.size() + i] =
+                v.kind == VertexKind::corner || v.on_minor_edge || (v.source != no_index && is_fixed_[v.source] != 0)
+                    ? 1
+                    : 0;
+        }
+        thin_out(patch, points_of(patch), judge_, rule, control_);
     }
 
     void assemble() {
         find_regions();
         result_ = base_.without_polygons();
-        for (std::size_t q = 0; q < base_.polygon_count(); ++q)
-            if (base_.parent(q) == no_index || level_[base_.parent(q)] == none)
-                result_.add_polygon(base_.polygon(q), base_.parent(q));
+        std::map<std::array<Index, 2>, std::vector<Index>> between;  // of sides, as the neighbour walks them
         for (Region& region : regions_) {
             const RegionPatch& patch = *find_patch(region);
             std::vector<Index> numbers = patch.outer;
+            for (const Index v : patch.outer) result_.points[v] = node_point(v);
             for (const RegionVertex& v : patch.inner)
                 numbers.push_back(result_.add_vertex(v.point, v.place, v.kind, v.curve));
             for (const auto& t : patch.triangles)
                 result_.add_polygon(std::array{numbers[t[0]], numbers[t[1]], numbers[t[2]]}, region.faces.front());
             for (const FeatureEdge& e : patch.feature_edges)
                 result_.feature_edges.push_back({numbers[e.a], numbers[e.b], e.curve});
+            for (const RegionSide& side : patch.sides) {
+                if (side.corners.size() < 3) continue;
+                auto& list = between[{numbers[side.corners.back()], numbers[side.corners.front()]}];
+                for (std::size_t i = side.corners.size() - 2; i > 0; --i) list.push_back(numbers[side.corners[i]]);
+                for (std::size_t i = 1; i < side.corners.size() && side.curve != no_index; ++i)
+                    result_.feature_edges.push_back(
+                        {numbers[side.corners[i - 1]], numbers[side.corners[i]], side.curve});
+            }
             region.triangles = patch.triangles.size();
         }
+        add_polygons_around(between);
+    }
+    /// The polygons of no region, with the corners that regions have left on their sides.
+    void add_polygons_around(const std::map<std::array<Index, 2>, std::vector<Index>>& between) {
+        CoarseMesh changed = result_.without_polygons();
+        std::vector<Index> ring;
+        for (std::size_t q = 0; q < base_.polygon_count(); ++q) {
+            const Index parent = base_.parent(q);
+            if (parent != no_index && level_[parent] != none) continue;
+            const auto old = base_.polygon(q);
+            ring.clear();
+            for (std::size_t i = 0; i < old.size(); ++i) {
+                ring.push_back(old[i]);
+                const auto found = between.find({old[i], old[(i + 1) % old.size()]});
+                if (found != between.end()) ring.insert(ring.end(), found->second.begin(), found->second.end());
+            }
+            (ring.size() == old.size() ? result_ : changed).add_polygon(ring, parent);
+        }
+        // Corners without a turn leave too much to a reader who fills polygons: these are cut here.
+        changed = rule_.all_triangles ? make_triangles(changed, judge_.tree) : make_quad_dominant(changed);
+        for (std::size_t q = 0; q < changed.polygon_count(); ++q)
+            result_.add_polygon(changed.polygon(q), changed.parent(q));
+    }
+
+    /// Sides that two polygons walk in the same direction: a cut has repeated one.
+    void add_repeated_sides(std::vector<Index>& broken) const {
+        std::vector<std::array<Index, 3>> sides;
+        for (Index q = 0; q < result_.polygon_count(); ++q) {
+            const auto ring = result_.polygon(q);
+            for (std::size_t i = 0; i < ring.size(); ++i) sides.push_back({ring[i], ring[(i + 1) % ring.size()], q});
+        }
+        std::sort(sides.begin(), sides.end());
+        for (std::size_t i = 1; i < sides.size(); ++i)
+            if (sides[i][0] == sides[i - 1][0] && sides[i][1] == sides[i - 1][1])
+                broken.push_back(sides[i][2]), broken.push_back(sides[i - 1][2]);
     }
 
     /// Takes what is broken into the set. False: nothing is, or nothing can be done about it.
@@ -188,6 +235,7 @@ private:
         const Damage damage = find_damage(judge_, result_, control_);
         report.split_quads = damage.split;
         std::vector<Index> broken = damage.polygons;
+        if (!regions_.empty()) add_repeated_sides(broken);
         add_missed_creases(broken);
         if (broken.empty() && !regions_.empty()) {
             // What is allowed has shrunk with what has become exact.
@@ -216,8 +264,8 @@ private:
             const Region& region = regions_[r];
             if (region.is_whole) continue;
             has_changed = true;
-            if (!region.is_second) {
-                for (const Index g : region.faces) level_[g] = second_try;
+            if (region.level < exact) {
+                for (const Index g : region.faces) level_[g] = region.level + 1;
                 continue;
             }
             // Larger, it may do at the first try again.
@@ -343,13 +391,12 @@ private:
     CoarseMesh& out_;
     const RunControl& control_;
     const std::vector<std::uint8_t> is_fixed_;
-    const Ground ground_;
     RegionPatcher patcher_;
 
     std::vector<std::uint8_t> level_;  ///< per face of the graph
     std::vector<Region> regions_;
     std::vector<Index> region_of_;  ///< per face
-    std::map<std::pair<std::vector<Index>, bool>, std::optional<RegionPatch>> patches_;
+    std::map<std::pair<std::vector<Index>, std::uint8_t>, std::optional<RegionPatch>> patches_;
     CoarseMesh result_;
 };
 
@@ -362,10 +409,7 @@ MendingReport mend(const Layout& layout, const Judge& judge, const MendingRule& 
 
 CoarseMesh thin_input(const WorkMesh& mesh, const Judge& judge, double tolerance, std::size_t vertices,
                       const RunControl& control) {
-    std::vector<Index> faces(mesh.faces.size());
-    std::iota(faces.begin(), faces.end(), 0U);
-    RegionMesh region = cut_region(mesh, faces, {}, {}, 1);
-    RegionPatch patch{{}, std::move(region.vertices), std::move(region.triangles), std::move(region.feature_edges)};
+    RegionPatch patch = take_all(mesh);
     std::vector<Point3> points;
     for (const RegionVertex& v : patch.inner) points.push_back(v.point);
     ThinningRule rule;

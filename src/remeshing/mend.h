@@ -6,9 +6,11 @@
 namespace certa::remeshing {
 
 struct MendingRule {
-    double tolerance = 0.0;  ///< by how much triangles of the input may be thinned out, in its unit
-    double error = 0.0;      ///< polygons farther than this are broken, too; 0: any distance will do
-    double reach = 0.0;      ///< how far a minor crease may be from the result; 0: as far as anything is
+    double tolerance = 0.0;       ///< by how much triangles of the input may be thinned out, in its unit
+    double side_tolerance = 0.0;  ///< the same beside the polygons around
+    double error = 0.0;           ///< polygons farther than this are broken, too; 0: any distance will do
+    double reach = 0.0;           ///< how far a minor crease may be from the result; 0: as far as anything is
+    bool all_triangles = false;   ///< neighbours that get more corners become triangles, else also quads
 };
 
 struct MendingReport {
@@ -18,8 +20,9 @@ struct MendingReport {
 };
 
 /// Replaces polygons that turn away, meet others or miss creases (and, on demand, that are too far) by thinned-out
-/// triangles of the input; where those fail, by all of them; where that fails, also around. In the end whole components
-/// are the input, which is sound by definition.
+/// triangles of the input, cut along the polygon's sides, whose neighbours get the corners that are left there; where
+/// those fail, by more of them; where that fails, also around. In the end whole components are the input, which is
+/// sound by definition.
 ///
 /// Guarantee: topology as before; what is not listed in `left` is free of folds and contacts. Deterministic.
 MendingReport mend(const Layout& layout, const Judge& judge, const MendingRule& rule, CoarseMesh& mesh,

@@ -1,10 +1,8 @@
 #pragma once
-// Triangles of the input in place of faces of the graph: what is left to do where no polygon will.
+// The input itself in place of faces of the graph: what is left to do where no polygon will.
 #include <optional>
 
-#include "core/triangle_tree.h"
 #include "remeshing/polygons.h"
-#include "remeshing/region_mesh.h"
 
 namespace certa::remeshing {
 
@@ -16,33 +14,42 @@ struct Layout {
     const std::vector<Index>& nodes;  ///< of the graph, per vertex of the polygons; vertices beyond have none
 };
 
+struct RegionVertex {
+    Point3 point;
+    SurfacePlace place;
+    VertexKind kind = VertexKind::smooth;
+    Index curve = no_index;
+    Index source = no_index;  ///< vertex of the work mesh, where it is one
+    bool on_minor_edge = false;
+};
+
+/// One side of a region between two nodes, cut where it passes edges of the input.
+struct RegionSide {
+    std::vector<Index> corners;  ///< of the patch, as the region walks it; the ends are outer
+    Index curve = no_index;      ///< where it is a crease or boundary
+};
+
 /// What replaces the faces of a region. Corners below `outer.size()` are vertices of the polygons around it, in the
 /// order of `outer`; the others those of `inner`.
 struct RegionPatch {
     std::vector<Index> outer;
     std::vector<RegionVertex> inner;
     std::vector<std::array<Index, 3>> triangles;
-    std::vector<FeatureEdge> feature_edges;  ///< between corners
-};
-
-/// The polygons as triangles, to find the one below a point.
-struct Ground {
-    explicit Ground(const CoarseMesh& mesh);
-    const CoarseMesh& polygons;
-    std::vector<Index> faces;  ///< per triangle: of the graph
-    core::TriangleTree tree;
+    std::vector<FeatureEdge> feature_edges;         ///< between corners, not those on sides
+    std::vector<std::array<Index, 2>> minor_edges;  ///< likewise: creases too short to be curves
+    std::vector<RegionSide> sides;
 };
 
 class RegionPatcher {
 public:
     explicit RegionPatcher(const Layout& layout);
 
-    /// The pieces of the work mesh's triangles that lie well inside the faces, and a strip between them and the sides
-    /// of the polygons around. Nothing where that is no ring: then the region has to grow.
+    /// The surface of the work mesh inside the faces, cut along their rim; exactly the input as long as outer corners
+    /// are the graph's nodes. Nothing where the rim touches itself, or is an island in one triangle: then the region
+    /// has to grow.
     ///
-    /// Guarantee: the patch has the topology of the region. Its shape has to be judged.
-    /// `clearance`: how far it keeps from those sides, in sides.
-    std::optional<RegionPatch> make(const Ground& ground, const std::vector<Index>& faces, double clearance);
+    /// Guarantee: the patch has the topology of the region.
+    std::optional<RegionPatch> make(const std::vector<Index>& faces) const;
     /// Faces that share a node with some of these, and these.
     std::vector<Index> grow(const std::vector<Index>& faces) const;
     /// Whether all faces of the components that these lie in are there.
@@ -52,51 +59,19 @@ public:
     Index face_beside(Index halfedge) const { return owners_[halfedge]; }
 
 private:
-    enum State : std::uint8_t { unknown, inside, outside, border };
-    struct Mark {
-        Index edge = no_index;
-        double t = 0.0;
-        bool inside_high = false;
-    };
-    using Loop = std::vector<Index>;
-
-    std::optional<std::vector<Loop>> find_outer_loops(const CoarseMesh& polygons, std::int64_t& characteristic) const;
-    void mark_border();
-    Complex crossing_in_plane(Index crossing, Index face) const;
-    void mark_line(Index halfedge);
-    void mark_curve(Index halfedge);
-    void seed();
-    void flood();
-    RegionMesh take_whole_components() const;
-    RegionMesh take_inside(double side) const;
-    void keep_clear(const Ground& ground, const std::vector<Loop>& outer, double margin, RegionMesh& region) const;
-    std::vector<std::array<std::size_t, 3>> find_crease_pairs(const Loop& outer, const Loop& inner,
-                                                              const RegionMesh& region, bool& fits) const;
-    bool add_strip(const CoarseMesh& polygons, const Loop& outer, const Loop& inner, const RegionMesh& region,
-                   const std::vector<Point3>& normals, RegionPatch& patch) const;
-    void reset();
-    void set(Index vertex, State state) {
-        if (states_[vertex] == unknown) touched_.push_back(vertex);
-        states_[vertex] = state;
-    }
+    std::int64_t characteristic(const std::vector<Index>& faces) const;
 
     Layout layout_;
     const WorkMesh& mesh_;
-    std::vector<Index> owners_;  ///< per half-edge of the graph: the face to its left
+    std::vector<Index> owners_;    ///< per half-edge of the graph: the face to its left
+    std::vector<Index> vertices_;  ///< per node: of the polygons
     std::vector<std::vector<Index>> node_faces_;
-    std::vector<Index> corner_offsets_, corners_;  ///< of the work mesh, by vertex
+    std::vector<std::uint8_t> is_minor_;  ///< per edge of the work mesh
     std::vector<std::vector<Index>> component_faces_;
     std::vector<Index> face_components_;
-
-    // Of the region at hand.
-    std::vector<std::uint8_t> in_region_;  ///< per face of the graph
-    std::vector<Index> region_;
-    std::vector<std::uint8_t> states_;  ///< per vertex of the work mesh
-    std::vector<Index> touched_;
-    std::vector<Mark> marks_;
-    std::vector<Index> blocked_edges_, cut_faces_;  ///< sorted
-    std::vector<BorderPiece> pieces_;
-    std::vector<Reference> seeds_;  ///< beside creases that are border
 };
+
+/// All of the work mesh, without a graph.
+RegionPatch take_all(const WorkMesh& mesh);
 
 }  // namespace certa::remeshing

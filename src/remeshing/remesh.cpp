@@ -551,8 +551,13 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
     Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
     judge_input(mesh, judge);
     const Layout layout{best_->network, best_->graph, best_->faces, best_->nodes};
-    const double tolerance = error > 0.0 ? 0.7 * error : 0.5 * best_->error;
-    const MendingReport report = mend(layout, judge, {tolerance, error, options_.error ? error : 0.0}, mesh, control_);
+    MendingRule rule;
+    rule.tolerance = error > 0.0 ? 0.7 * error : 0.5 * best_->error;
+    rule.side_tolerance = error > 0.0 ? 0.9 * error : 1.5 * best_->error;
+    rule.error = error;
+    rule.reach = options_.error ? error : 0.0;
+    rule.all_triangles = options_.output == RemeshOutput::triangles;
+    const MendingReport report = mend(layout, judge, rule, mesh, control_);
     RemeshStatistics& s = result_.statistics;
     s.mended_regions = report.regions;
     s.mended_triangles = report.triangles;

@@ -48,6 +48,7 @@ public:
         : patch_(patch), judge_(judge), rule_(rule), control_(control), origin_(points[0]) {
         for (const Point3& p : points) points_.push_back(p - origin_);
         const std::size_t n = points.size();
+        if (rule.side_tolerance > 0.0) side_scale_ = std::pow(rule.tolerance / rule.side_tolerance, 2);
         around_.resize(n), creases_.resize(n), quadrics_.resize(n), stamps_.assign(n, 0);
         for (Index t = 0; t < patch.triangles.size(); ++t)
             for (const Index v : patch.triangles[t]) around_[v].push_back(t);
@@ -55,6 +56,21 @@ public:
         for (const FeatureEdge& e : patch.feature_edges) {
             creases_[e.a].push_back({e.b, e.curve});
             creases_[e.b].push_back({e.a, e.curve});
+        }
+        for (const auto& [a, b] : patch.minor_edges) {
+            creases_[a].push_back({b, minor});
+            creases_[b].push_back({a, minor});
+        }
+        side_of_.assign(n, no_index);
+        for (Index k = 0; k < patch.sides.size(); ++k) {
+            const auto& corners = patch.sides[k].corners;
+            for (std::size_t i = 0; i < corners.size(); ++i) {
+                if (i > 0 && i + 1 < corners.size()) side_of_[corners[i]] = k;
+                if (i == 0) continue;
+                creases_[corners[i - 1]].push_back({corners[i], first_side + k});
+                creases_[corners[i]].push_back({corners[i - 1], first_side + k});
+            }
+            side_lengths_.push_back(distance(points[corners.front()], points[corners.back()]));
         }
         for (const auto& t : patch.triangles) {
             const Point3 area = cross(points_[t[1]] - points_[t[0]], points_[t[2]] - points_[t[0]]);
@@ -81,7 +97,9 @@ public:
     }
 
 private:
+    static constexpr Index first_side = 1U << 31, minor = first_side - 1;  ///< numbers of curves
     bool is_outer(Index v) const { return v < patch_.outer.size(); }
+    bool is_on_rim(Index v) const { return is_outer(v) || side_of_[v] != no_index; }
     std::vector<Index> neighbours(Index v) const {
         std::vector<Index> list;
         for (const Index t : around_[v])
@@ -101,7 +119,9 @@ private:
         if (!is_free(v)) return;
         for (const Index w : neighbours(v)) {
             if (!creases_[v].empty() && w != creases_[v][0].first && w != creases_[v][1].first) continue;
-            queue_.push({value_at(quadrics_[v], points_[w]), v, w, stamps_[v]});
+            double cost = value_at(quadrics_[v], points_[w]);
+            if (side_of_[v] != no_index) cost *= side_scale_;
+            queue_.push({cost, v, w, stamps_[v]});
         }
     }
     bool may_collapse(Index v, Index w) const {
@@ -113,23 +133,33 @@ private:
             const auto& c = patch_.triangles[t];
             if (std::find(c.begin(), c.end(), w) != c.end()) ++shared;
         }
-        if (common.size() != shared || around_[v].size() <= shared) return false;
-        if (around_[w].size() + around_[v].size() < 3 + 2 * shared) return false;
-        for (const Index x : common)
-            if (!is_outer(x) && creases_[x].empty() && around_[x].size() < 4) return false;
-        if (is_outer(w))
+        if (common.size() != shared) return false;
+        if (around_[v].size() <= shared && (side_of_[v] == no_index || patch_.triangles.size() < 4)) return false;
+        if (around_[w].size() + around_[v].size() < (is_on_rim(w) ? 1 : 3) + 2 * shared) return false;
+        for (const Index x : common) {
+            const std::size_t least = is_on_rim(x) ? 2 : 4;
+            if ((is_on_rim(x) || creases_[x].empty()) && around_[x].size() < least) return false;
+        }
+        if (is_on_rim(w)) {
+            const Index other = side_of_[v] == no_index ? no_index : beyond(v, w);
             for (const Index x : of_v)
-                if (x != w && is_outer(x) && !std::binary_search(of_w.begin(), of_w.end(), x)) return false;
+                if (x != w && x != other && is_on_rim(x) && !std::binary_search(of_w.begin(), of_w.end(), x))
+                    return false;
+        }
         if (!creases_[v].empty()) {
-            const Index other = creases_[v][0].first == w ? creases_[v][1].first : creases_[v][0].first;
+            const Index other = beyond(v, w);
             const bool closes = std::any_of(creases_[w].begin(), creases_[w].end(),
                                             [&](const auto& crease) { return crease.first == other; });
-            if (other == w || closes ||
-                distance_to_segment(points_[v], points_[w], points_[other]) > 0.3 * rule_.tolerance)
+            double reach = 0.3 * rule_.tolerance;
+            if (const Index k = side_of_[v]; k != no_index && patch_.sides[k].curve == no_index)
+                reach = std::max(reach, rule_.side_share * side_lengths_[k]);
+            if (other == w || closes || distance_to_segment(points_[v], points_[w], points_[other]) > reach)
                 return false;
         }
         return std::all_of(around_[v].begin(), around_[v].end(), [&](Index t) { return is_sound(t, v, w); });
     }
+    /// On the curve of v, the neighbour that w is not.
+    Index beyond(Index v, Index w) const { return creases_[v][creases_[v][0].first == w ? 1 : 0].first; }
     static double distance_to_segment(const Point3& p, const Point3& a, const Point3& b) {
         const Point3 d = b - a;
         const double length = dot(d, d), s = length > 0.0 ? std::clamp(dot(p - a, d) / length, 0.0, 1.0) : 0.0;
@@ -154,7 +184,8 @@ private:
         if (shape < 0.05 && !(shape > old_shape)) return false;
         if (!(dot(area, old) > 0.3 * size * norm(old))) return false;
         const Point3 middle = origin_ + (1.0 / 3.0) * (p[0] + p[1] + p[2]);
-        if (judge_.tree.find_nearest(middle).squared_distance > rule_.tolerance * rule_.tolerance) return false;
+        const double reach = side_of_[v] == no_index ? rule_.tolerance : rule_.side_tolerance;
+        if (judge_.tree.find_nearest(middle).squared_distance > reach * reach) return false;
         return !judge_.is_turned_away(origin_ + p[0], origin_ + p[1], origin_ + p[2]);
     }
     void collapse(Index v, Index w) {
@@ -199,8 +230,19 @@ private:
             out.triangles.push_back({numbers[c[0]], numbers[c[1]], numbers[c[2]]});
         }
         for (Index v = 0; v < points_.size(); ++v)
-            for (const auto& [w, curve] : creases_[v])
-                if (v < w) out.feature_edges.push_back({numbers[v], numbers[w], curve});
+            for (const auto& [w, curve] : creases_[v]) {
+                if (v > w || curve >= first_side) continue;
+                if (curve == minor)
+                    out.minor_edges.push_back({numbers[v], numbers[w]});
+                else
+                    out.feature_edges.push_back({numbers[v], numbers[w], curve});
+            }
+        for (RegionSide& side : patch_.sides) {
+            RegionSide kept{{}, side.curve};
+            for (const Index v : side.corners)
+                if (numbers[v] != no_index) kept.corners.push_back(numbers[v]);
+            out.sides.push_back(std::move(kept));
+        }
         patch_ = std::move(out);
     }
 
@@ -212,6 +254,9 @@ private:
     std::vector<Point3> points_;
     std::vector<std::vector<Index>> around_;
     std::vector<std::vector<std::pair<Index, Index>>> creases_;  ///< per vertex: the other end, the curve
+    std::vector<Index> side_of_;                                 ///< per vertex between the ends of a side
+    std::vector<double> side_lengths_;
+    double side_scale_ = 1.0;  ///< of costs, so that one limit does for all
     std::vector<Quadric> quadrics_;
     std::vector<std::uint32_t> stamps_;
     std::vector<std::uint8_t> is_alive_;

@@ -6,9 +6,12 @@
 namespace certa::remeshing {
 
 struct ThinningRule {
-    double tolerance = 0.0;              ///< distance that may be lost, in the input's unit
-    std::size_t least_vertices = 0;      ///< no fewer than this
-    std::vector<std::uint8_t> is_fixed;  ///< per corner of the patch: stays; outer corners always do
+    double tolerance = 0.0;          ///< distance that may be lost, in the input's unit
+    double side_tolerance = 0.0;     ///< the same for triangles at the patch's sides
+    double side_share = 0.0;         ///< how far a side may move along the surface, in its lengths
+    std::size_t least_vertices = 0;  ///< no fewer than this
+    std::vector<std::uint8_t>
+        is_fixed;  ///< per corner of the patch: stays; outer corners always do, on sides others may
 };
 
 /// Collapses edges onto one of their ends, the least error first (Garland and Heckbert 1997). `points`: per corner of
