@@ -11,11 +11,6 @@
 
 namespace certa::expression {
 
-int operand_count(Op op) {
-    if (op <= Op::z) return 0;
-    return (op >= Op::add && op <= Op::divide) || op == Op::real_power ? 2 : 1;
-}
-
 const char* symbol_of(Op op) {
     static constexpr const char* symbols[] = {"",    "pi",  "x",    "y",    "z",    "-",   "+",   "-",
                                               "*",   "/",   "^",    "^",    "sqrt", "exp", "log", "sin",

@@ -34,7 +34,10 @@ enum class Op : unsigned char {
     tanh,
 };
 /// 0, 1 or 2; real_power has its exponent as second operand, power has it as a number.
-int operand_count(Op op);
+inline int operand_count(Op op) {
+    if (op <= Op::z) return 0;
+    return (op >= Op::add && op <= Op::divide) || op == Op::real_power ? 2 : 1;
+}
 /// As written in expressions: "+", "sin", ...
 const char* symbol_of(Op op);
 

@@ -20,11 +20,20 @@ namespace {
 
 using Face = std::array<std::uint32_t, 3>;  ///< sorted points; fewer than three: the last ones repeat
 
+/// Written out: comparing arrays calls memcmp.
+int compare(const Face& a, const Face& b) {
+    for (std::size_t i = 0; i < 3; ++i) {
+        if (a[i] != b[i]) return a[i] < b[i] ? -1 : 1;
+    }
+    return 0;
+}
+
 struct FrontierFace {
     Face face;
     std::uint32_t leaf;
     bool operator<(const FrontierFace& other) const {
-        return face != other.face ? face < other.face : leaf < other.leaf;
+        const int order = compare(face, other.face);
+        return order != 0 ? order < 0 : leaf < other.leaf;
     }
 };
 
@@ -35,8 +44,14 @@ bool is_mixed(const Triangulation& t, const Triangulation::Tetrahedron& tetrahed
 
 class Checker {
 public:
-    Checker(const Octree& tree, const Triangulation& t, const Growth& growth, const std::vector<Cluster>& clusters)
-        : tree_(tree), t_(t), growth_(growth), clusters_(clusters), bad_(t.active_leaves().size(), 0) {}
+    Checker(const Octree& tree, const Triangulation& t, const Growth& growth, const std::vector<Cluster>& clusters,
+            std::vector<ProvedFace>& proved)
+        : tree_(tree),
+          t_(t),
+          growth_(growth),
+          clusters_(clusters),
+          proved_(proved),
+          bad_(t.active_leaves().size(), 0) {}
 
     Findings run(const expression::Tape& tape, const RunControl& control) {
         check_mixed();
@@ -120,20 +135,40 @@ private:
                 faces.push_back({face, leaf});
         }
         std::sort(faces.begin(), faces.end());
-        std::vector<char> holds(faces.size(), 0);
+        std::vector<char> holds = known_before(faces);
         core::parallel_for(faces.size(), 256, control, [&](std::size_t begin, std::size_t end) {
             Field field(tape);
-            for (std::size_t i = begin; i < end; ++i) {
-                if (i > begin && faces[i].face == faces[i - 1].face) {
+            for (std::size_t i = begin; i < end && !control.cancelled(); ++i) {
+                if (holds[i]) continue;
+                if (i > begin && compare(faces[i].face, faces[i - 1].face) == 0) {
                     holds[i] = holds[i - 1];
                     continue;
                 }
                 holds[i] = field.sign_on(region_of(faces[i].face)) == t_.sign(faces[i].face[0]) ? 1 : 0;
             }
         });
+        proved_.clear();
         for (std::size_t i = 0; i < faces.size(); ++i) {
-            if (!holds[i]) fail("frontier", faces[i].leaf);
+            if (!holds[i]) {
+                fail("frontier", faces[i].leaf);
+            } else if (i == 0 || compare(faces[i].face, faces[i - 1].face) != 0) {
+                proved_.push_back({faces[i].face, t_.sign(faces[i].face[0])});
+            }
         }
+    }
+
+    /// Which of the sorted faces were proved in the round before, with the sign that they have now.
+    std::vector<char> known_before(const std::vector<FrontierFace>& faces) const {
+        std::vector<char> holds(faces.size(), 0);
+        std::size_t k = 0;
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            while (k < proved_.size() && compare(proved_[k].points, faces[i].face) < 0) ++k;
+            holds[i] = k < proved_.size() && compare(proved_[k].points, faces[i].face) == 0 &&
+                               proved_[k].sign == t_.sign(faces[i].face[0])
+                           ? 1
+                           : 0;
+        }
+        return holds;
     }
 
     /// The smallest box of the grid around a face: its convex hull lies in it.
@@ -374,6 +409,7 @@ private:
     const Triangulation& t_;
     const Growth& growth_;
     const std::vector<Cluster>& clusters_;
+    std::vector<ProvedFace>& proved_;
     std::vector<char> bad_;
     std::unique_ptr<core::UnionFind> regions_;
     Findings findings_;
@@ -382,9 +418,16 @@ private:
 }  // namespace
 
 Findings check_conditions(const Octree& tree, const Triangulation& triangulation, const Growth& growth,
+                          const std::vector<Cluster>& clusters, const expression::Tape& tape, const RunControl& control,
+                          std::vector<ProvedFace>& proved) {
+    return Checker(tree, triangulation, growth, clusters, proved).run(tape, control);
+}
+
+Findings check_conditions(const Octree& tree, const Triangulation& triangulation, const Growth& growth,
                           const std::vector<Cluster>& clusters, const expression::Tape& tape,
                           const RunControl& control) {
-    return Checker(tree, triangulation, growth, clusters).run(tape, control);
+    std::vector<ProvedFace> nothing;
+    return check_conditions(tree, triangulation, growth, clusters, tape, control, nothing);
 }
 
 }  // namespace certa::implicit

@@ -1,5 +1,6 @@
 #pragma once
 // The conditions of the theorem on T and W, and where they fail.
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -32,11 +33,23 @@ struct Findings {
     std::vector<std::uint32_t> component_of_point;  ///< per point: position in `components`, none for unmarked ones
 };
 
+/// A face of T on which a sign of f is proved: its points, sorted, the last one repeated where there are fewer.
+struct ProvedFace {
+    std::array<std::uint32_t, 3> points;
+    int sign;
+};
+
 /// Checks, in this order: every tetrahedron with both signs has all its points marked (conditions 3 and M^ in the
 /// interior of W); f has the declared sign on the largest marked face of every tetrahedron outside W (condition 1); per
 /// component of W, the degree of grad f over what it encloses is +-chi/2 (condition 4*). Of a clipped box "encloses"
 /// means the side away from the corner (0, 0, 0), and the eight copies are compared (docs/implicit-theorem.md).
 /// Conditions 0 and 2 hold by construction: see docs/implicit-theorem.md.
+///
+/// `proved` is what is known of the frontier of the round before, in the order of points, and becomes what is known of
+/// this one: most faces are in both. All rounds must be of one tree and function.
+Findings check_conditions(const Octree& tree, const Triangulation& triangulation, const Growth& growth,
+                          const std::vector<Cluster>& clusters, const expression::Tape& tape, const RunControl& control,
+                          std::vector<ProvedFace>& proved);
 Findings check_conditions(const Octree& tree, const Triangulation& triangulation, const Growth& growth,
                           const std::vector<Cluster>& clusters, const expression::Tape& tape,
                           const RunControl& control);

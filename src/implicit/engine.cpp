@@ -68,10 +68,11 @@ public:
                 triangulation.emplace(tree_, field_, signs_, watershed_);
             }
             growth = watershed_ ? grow_watershed(*triangulation, sizes_of_values()) : grow(*triangulation, links);
-            Findings findings = check_conditions(tree_, *triangulation, growth, clusters, tape_, control_);
+            Findings findings = check_conditions(tree_, *triangulation, growth, clusters, tape_, control_, proved_);
+            if (control_.cancelled()) return stop({ImplicitObstacle::Reason::cancelled, {}});
             if (findings.offenders.empty()) {
-                conclude(*triangulation, growth, findings);
-                return std::move(result_);
+                if (is_to_be_simplified(findings)) thicken(*triangulation, growth, findings, clusters);
+                return conclude(*triangulation, growth, findings);
             }
             const bool critical = std::any_of(findings.offenders.begin(), findings.offenders.end(),
                                               [&](std::uint32_t leaf) { return tree_.cell(leaf).is_critical(); });
@@ -141,9 +142,63 @@ private:
         result_.triangle_components = std::move(surface.component_of_triangle);
     }
 
-    void conclude(const Triangulation& triangulation, const Growth& growth, const Findings& findings) {
+    bool is_to_be_simplified(const Findings& findings) const {
+        return (error_ || hausdorff_) && !tree_.is_clipped() && !findings.components.empty();
+    }
+
+    /// Room for the simplification: the sign of f is forgotten on regular leaves as near to the zero set as the mesh
+    /// may be, so that W may grow into them and its frontier is proved anew (as along a mesh, guided.cpp). Where the
+    /// conditions fail then, leaves remember their signs; if nothing helps all do, and W stays what it was.
+    void thicken(Triangulation& triangulation, Growth& growth, Findings& findings,
+                 const std::vector<Cluster>& clusters) {
+        const double reach = 2 * (error_ ? *error_ : *hausdorff_);
+        std::vector<std::int8_t> forgotten(tree_.cells().size(), 0);
+        for (const std::uint32_t leaf : tree_.leaves()) {
+            Cell& cell = tree_.cell(leaf);
+            if (cell.known.slope == 0 || tree_.touches_boundary(cell) || !is_near(cell, reach)) continue;
+            forgotten[leaf] = cell.known.sign;
+            cell.known.sign = 0;
+        }
+        const auto remember = [&](std::uint32_t leaf) {
+            if (forgotten[leaf] != 0) tree_.cell(leaf).known.sign = forgotten[leaf];
+            forgotten[leaf] = 0;
+        };
+        for (int attempt = 0; attempt < 4 && !is_too_large() && !control_.cancelled(); ++attempt) {
+            control_.report("certify", 0.99);
+            Triangulation thick(tree_, field_, signs_);
+            Growth more = grow(thick);
+            Findings found = check_conditions(tree_, thick, more, clusters, tape_, control_, proved_);
+            if (found.offenders.empty()) {
+                triangulation = std::move(thick);
+                growth = std::move(more);
+                findings = std::move(found);
+                return;
+            }
+            for (const std::uint32_t leaf : found.offenders) tree_.visit_around_corners(tree_.cell(leaf), remember);
+        }
+        for (const std::uint32_t leaf : tree_.leaves()) remember(leaf);
+    }
+
+    /// Whether the zero set seems to be within a distance of a leaf.
+    bool is_near(const Cell& cell, double reach) {
+        const Region box = tree_.region_of(cell);
+        const auto& jet = field_.slope(tree_.grid().place(tree_.center_of(cell)));
+        const double half = std::hypot(interval::width(box[0]), interval::width(box[1]), interval::width(box[2])) / 2;
+        return std::fabs(jet.value) <= (reach + half) * std::hypot(jet.gradient[0], jet.gradient[1], jet.gradient[2]);
+    }
+
+    ImplicitResult conclude(const Triangulation& triangulation, const Growth& growth, const Findings& findings) {
         count();
         Surface surface = build_surface(tree_, triangulation, findings, field_);
+        if (is_to_be_simplified(findings)) {
+            const Frontier frontier(tree_, triangulation, growth);
+            if (hausdorff_)
+                result_.hausdorff = simplify_to_distance(surface, frontier, tape_, *hausdorff_, control_);
+            else
+                surface = simplify(surface, &frontier, tape_, {*error_}, control_);
+            // A mesh that is not as near as it was to be is no result.
+            if (control_.cancelled()) return stop({ImplicitObstacle::Reason::cancelled, {}});
+        }
         result_.statistics.tetrahedra = triangulation.tetrahedra().size();
         result_.outcome = Outcome::done;
         result_.verdict = findings.components.empty() ? ImplicitVerdict::empty : ImplicitVerdict::certified;
@@ -157,18 +212,12 @@ private:
             result_.components.back().degree = component.degree8 / 8;
             if (component.parent != none) result_.components.back().parent = component.parent;
         }
-        if ((error_ || hausdorff_) && !tree_.is_clipped() && result_.verdict == ImplicitVerdict::certified) {
-            const Frontier frontier(tree_, triangulation, growth);
-            if (hausdorff_)
-                result_.hausdorff = simplify_to_distance(surface, frontier, tape_, *hausdorff_, control_);
-            else
-                surface = simplify(surface, &frontier, tape_, {*error_}, control_);
-        }
         if (certificate_)
             result_.certificate = write_certificate(function_, tree_, triangulation, growth, surface,
                                                     result_.components, result_.hausdorff);
         result_.mesh = std::move(surface.mesh);
         result_.triangle_components = std::move(surface.component_of_triangle);
+        return std::move(result_);
     }
 
     Expression function_;
@@ -182,6 +231,7 @@ private:
     bool uncertified_, watershed_;
     std::vector<double> sizes_;  ///< per point
     Limits limits_;
+    std::vector<ProvedFace> proved_;  ///< of the frontier of the last round
     std::vector<Triangulation::PointSign> signs_;
     ImplicitResult result_;
 };

@@ -11,7 +11,7 @@ namespace {
 bool same(const GridPoint& a, const GridPoint& b) { return a[0] == b[0] && a[1] == b[1] && a[2] == b[2]; }
 }  // namespace
 
-PointMap::PointMap() : slots_(1024, none) {}
+PointMap::PointMap() : slots_(1024) {}
 
 std::size_t PointMap::slot_of(const GridPoint& p) const {
     std::uint64_t key = p[0] * 0x9e3779b97f4a7c15ull;
@@ -22,28 +22,28 @@ std::size_t PointMap::slot_of(const GridPoint& p) const {
 
 std::uint32_t PointMap::find(const GridPoint& p) const {
     for (std::size_t s = slot_of(p);; s = (s + 1) & (slots_.size() - 1)) {
-        if (slots_[s] == none || same(points_[slots_[s]], p)) return slots_[s];
+        if (slots_[s].id == none || same(slots_[s].point, p)) return slots_[s].id;
     }
 }
 
 std::uint32_t PointMap::insert(const GridPoint& p) {
     if (2 * (points_.size() + 1) > slots_.size()) grow();
     std::size_t s = slot_of(p);
-    while (slots_[s] != none) {
-        if (same(points_[slots_[s]], p)) return slots_[s];
+    while (slots_[s].id != none) {
+        if (same(slots_[s].point, p)) return slots_[s].id;
         s = (s + 1) & (slots_.size() - 1);
     }
-    slots_[s] = static_cast<std::uint32_t>(points_.size());
+    slots_[s] = {p, static_cast<std::uint32_t>(points_.size())};
     points_.push_back(p);
-    return slots_[s];
+    return slots_[s].id;
 }
 
 void PointMap::grow() {
-    slots_.assign(2 * slots_.size(), none);
+    slots_.assign(2 * slots_.size(), Slot{});
     for (std::uint32_t id = 0; id < points_.size(); ++id) {
         std::size_t s = slot_of(points_[id]);
-        while (slots_[s] != none) s = (s + 1) & (slots_.size() - 1);
-        slots_[s] = id;
+        while (slots_[s].id != none) s = (s + 1) & (slots_.size() - 1);
+        slots_[s] = {points_[id], id};
     }
 }
 

@@ -36,10 +36,15 @@ public:
     const GridPoint& operator[](std::uint32_t id) const { return points_[id]; }
 
 private:
+    /// A place of the table with its key: looking a point up touches one line of memory.
+    struct Slot {
+        GridPoint point{};
+        std::uint32_t id = none;
+    };
     std::size_t slot_of(const GridPoint& p) const;
     void grow();
     std::vector<GridPoint> points_;
-    std::vector<std::uint32_t> slots_;
+    std::vector<Slot> slots_;
 };
 
 class Octree {
@@ -144,7 +149,9 @@ void Octree::visit_squares(const GridPoint& low, int axis, int side, Coordinate 
     corners[3][v] += size;
     if (side == 0) std::reverse(corners.begin(), corners.end());
     std::vector<std::uint32_t> ring;
-    for (std::size_t i = 0; i < 4; ++i) append_edge(points_.find(corners[i]), points_.find(corners[(i + 1) % 4]), ring);
+    std::array<std::uint32_t, 4> ids{};
+    for (std::size_t i = 0; i < 4; ++i) ids[i] = points_.find(corners[i]);
+    for (std::size_t i = 0; i < 4; ++i) append_edge(ids[i], ids[(i + 1) % 4], ring);
     visit(center, ring);
 }
 

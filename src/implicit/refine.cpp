@@ -20,7 +20,7 @@ void certify(Octree& tree, const std::vector<std::uint32_t>& ids, const expressi
              const RunControl& control) {
     core::parallel_for(ids.size(), 64, control, [&](std::size_t begin, std::size_t end) {
         Field field(tape);
-        for (std::size_t i = begin; i < end; ++i) {
+        for (std::size_t i = begin; i < end && !control.cancelled(); ++i) {
             Cell& cell = tree.cell(ids[i]);
             const Certainty found = field.certify(tree.region_of(cell), tree.free_axes(cell));
             if (found.sign != 0) cell.known.sign = found.sign;
@@ -191,12 +191,12 @@ public:
         std::vector<std::uint32_t> generation{0};
         certify(tree_, generation, tape_, control_);
         for (int depth = 0;; ++depth) {
+            if (control_.cancelled()) return Obstacle{Reason::cancelled, {}};
             std::vector<std::uint32_t> open;
             for (const std::uint32_t id : generation) {
                 if (is_open(tree_, tree_.cell(id))) open.push_back(id);
             }
             if (open.empty()) return std::nullopt;
-            if (control_.cancelled()) return Obstacle{Reason::cancelled, {}};
             control_.report("classify", std::min(0.95, 0.06 * depth));
             if (auto obstacle = look_ahead(open, depth)) return obstacle;
             if (tree_.cells().size() + 8 * open.size() > limits_.max_cells || limits_.is_late())
@@ -295,6 +295,7 @@ std::optional<Obstacle> split_all(Octree& tree, const std::vector<std::uint32_t>
         for (std::uint32_t c = 0; c < 8; ++c) children.push_back(first + c);
     }
     certify(tree, children, tape, control);
+    if (control.cancelled()) return Obstacle{Reason::cancelled, {}};
     return std::nullopt;
 }
 

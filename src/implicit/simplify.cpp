@@ -64,7 +64,7 @@ private:
         for (int pass = 0; pass < 3; ++pass) {
             mesh_.sort_by_place();
             std::size_t count = 0;
-            for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+            for (std::uint32_t t = 0; t < mesh_.triangle_count() && !control_.cancelled(); ++t) {
                 if (!mesh_.is_alive(t) || mesh_.fitness(mesh_.corners(mesh_.triangle(t))).angle > good_angle) continue;
                 const auto [a, b] = shortest_edge(t);
                 const Fitness old = around(a, b);
@@ -110,8 +110,8 @@ private:
                 if (mesh_.living_triangles() >= wanted_.most_triangles) return;
                 any = split_longest(t) || any;
             }
-            if (!any) return;
-            for (std::uint32_t v = 0; v < mesh_.vertex_count(); ++v) improve(v, true);
+            if (!any || control_.cancelled()) return;
+            for (std::uint32_t v = 0; v < mesh_.vertex_count() && !control_.cancelled(); ++v) improve(v, true);
         }
     }
     bool split_longest(std::uint32_t t) {
@@ -232,7 +232,7 @@ private:
     void mend_angles() {
         for (int round = 0; round < 8; ++round) {
             std::size_t thin = 0;
-            for (std::uint32_t t = 0; t < mesh_.triangle_count(); ++t) {
+            for (std::uint32_t t = 0; t < mesh_.triangle_count() && !control_.cancelled(); ++t) {
                 if (!mesh_.is_alive(t)) continue;
                 const Fitness old = mesh_.fitness(mesh_.corners(mesh_.triangle(t)));
                 if (old.angle > 0.2) continue;

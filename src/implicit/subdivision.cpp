@@ -61,7 +61,7 @@ private:
         slopes_.resize(tree_.cells().size());
         core::parallel_for(ids.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
             Field field(tape_);
-            for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t i = begin; i < end && !control_.cancelled(); ++i) {
                 Cell& cell = tree_.cell(ids[i]);
                 const Certainty found = field.certify_variation(tree_.region_of(cell), slopes_[ids[i]]);
                 if (found.sign != 0) cell.known.sign = found.sign;
@@ -115,6 +115,7 @@ private:
             for (const std::uint32_t id : generation) {
                 if (is_open(tree_.cell(id))) open.push_back(id);
             }
+            if (control_.cancelled()) return stop(Reason::cancelled, {});
             if (open.empty()) return true;
             control_.report("subdivide", 0.5);
             if (!split(open, generation)) return false;
@@ -131,7 +132,7 @@ private:
             if (!settle_points(open)) return false;
             std::vector<char> tame(open.size(), 0);
             core::parallel_for(open.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t i = begin; i < end; ++i) tame[i] = is_tame(open[i]) ? 1 : 0;
+                for (std::size_t i = begin; i < end && !control_.cancelled(); ++i) tame[i] = is_tame(open[i]) ? 1 : 0;
             });
             std::vector<std::uint32_t> wild, changed;
             for (std::size_t i = 0; i < open.size(); ++i) {
@@ -216,7 +217,7 @@ private:
         values_.resize(tree_.points().size());
         core::parallel_for(used.size(), 256, control_, [&](std::size_t begin, std::size_t end) {
             Field field(tape_);
-            for (std::size_t p = begin; p < end; ++p) {
+            for (std::size_t p = begin; p < end && !control_.cancelled(); ++p) {
                 if (used[p] && values_[p].value == 0) settle(static_cast<std::uint32_t>(p), field);
             }
         });
