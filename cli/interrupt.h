@@ -1,6 +1,6 @@
 #pragma once
-// SIGINT and SIGTERM: the first asks a running computation to stop, and ends the process after a second if that has not
-// happened; the second ends the process at once.
+// SIGINT and SIGTERM: the first asks a running computation to stop, and ends the process within a second if that has
+// not happened; the second ends the process at once.
 #include <atomic>
 
 namespace certa::cli {

@@ -547,6 +547,17 @@ class Signals(CommandTest):
     def test_a_second_signal_ends_at_once(self):
         self.interrupt_meshing([signal.SIGINT, signal.SIGTERM])
 
+    def test_long_rounds_of_implicit_end_soon(self):
+        self.write("out.off", "precious")
+        process = self.start("implicit", "(x^2+y^2+z^2-1)^2-0.0025", "-o", "out.off")
+        time.sleep(2.5)
+        self.assertIsNone(process.poll(), "the surface is too small to interrupt its meshing")
+        process.send_signal(signal.SIGINT)
+        errors = process.communicate(timeout=20)[1]
+        self.assertEqual(process.returncode, 130)
+        self.assertIn(b"interrupted; no output was written", errors)
+        self.assertEqual(self.read("out.off"), b"precious")
+
     def test_waiting_for_input_can_be_interrupted(self):
         process = self.start("conform", "-", "--input-format", "off", stdin=subprocess.PIPE)
         time.sleep(0.5)
