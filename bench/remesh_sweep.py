@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Remeshes every clean model of a folder at several vertex counts, and prints one line for each.
 
-    remesh_sweep.py CERTA MODELS [--counts 500,1500,5000,default] [--timeout SECONDS] [NAME...]
+    remesh_sweep.py CERTA MODELS [--counts 500,1500,5000,default] [--timeout SECONDS] [--names NAME...]
 
 Clean: INDEX.tsv in MODELS says manifold, without self-intersections, of cad, scan or surfaces. The command checks each
 result itself; exit code 4 is a broken promise. Columns: vertices, share of quads, regions and triangles of mending, CPU
@@ -56,7 +56,7 @@ def main():
     parser.add_argument("models", type=pathlib.Path)
     parser.add_argument("--counts", default="500,1500,5000,default")
     parser.add_argument("--timeout", type=float, default=600.0)
-    parser.add_argument("names", nargs="*")
+    parser.add_argument("--names", nargs="*", default=[])
     arguments = parser.parse_args()
     print(f"{'model':32} {'asked':>7} {'exit':>5} {'has':>7} quads    mended       CPU s")
     with tempfile.TemporaryDirectory() as folder:

@@ -118,6 +118,7 @@ private:
     }
     void list_fillings() {
         fillings_.assign(mesh_.polygon_count(), {});
+        is_doubtful_.assign(mesh_.polygon_count(), 0);
         core::parallel_for(fillings_.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
             for (std::size_t q = begin; q < end; ++q) fill(q);
         });
@@ -140,6 +141,10 @@ private:
         };
         const bool first_faces = faces(first), second_faces = faces(second);
         if (first_faces != second_faces) {
+            // With a corner that hardly turns the wrong way, others may take the other diagonal.
+            const Filling& other = first_faces ? second : first;
+            is_doubtful_[q] = std::any_of(other.triangles.begin(), other.triangles.end(),
+                                          [&](const Triple& t) { return needle_weight(points(t)) > 0.0; });
             list.push_back(first_faces ? std::move(first) : std::move(second));
             return;
         }
@@ -198,7 +203,8 @@ private:
         CoarseMesh cut = mesh_.without_polygons();
         for (Index q = 0; q < fillings_.size(); ++q) {
             const auto& list = fillings_[q];
-            const bool is_bad = std::any_of(list.begin(), list.end(), [](const Filling& f) { return f.badness() > 0; });
+            const bool is_bad = is_doubtful_[q] != 0 ||
+                                std::any_of(list.begin(), list.end(), [](const Filling& f) { return f.badness() > 0; });
             if (mesh_.polygon(q).size() == 3 || !is_bad) {
                 cut.add_polygon(mesh_.polygon(q), mesh_.parent(q));
                 continue;
@@ -216,6 +222,7 @@ private:
     CoarseMesh& mesh_;
     const RunControl& control_;
     std::vector<std::vector<Filling>> fillings_;
+    std::vector<std::uint8_t> is_doubtful_;  ///< quads that are better cut
 };
 
 }  // namespace

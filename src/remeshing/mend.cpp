@@ -2,13 +2,16 @@
 //
 // Each round makes the whole result anew from the same polygons and a set of faces: connected faces are a region, which
 // the input inside replaces, thinned out. Sides of the region are cut where they pass edges of the input; the polygons
-// around take over those corners that are left. Then everything is judged. Broken polygons join the set; a broken patch
-// is thinned out less, then not at all, then its region grows. The set only grows, so this ends: at the latest when
-// whole components are the input.
+// around take over those corners that are left. Then everything is judged. Broken polygons join the set; where a patch
+// is broken, it is not thinned out any more, and where that has not helped its region grows. Both only grow, so this
+// ends: at the latest when whole components are the input.
 #include "remeshing/mend.h"
+
+#include <certa/distance.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 
@@ -71,7 +74,7 @@ public:
           control_(control),
           is_fixed_(fixed_vertices(mesh_)),
           patcher_(layout) {
-        level_.assign(patcher_.face_count(), none);
+        in_set_.assign(patcher_.face_count(), 0);
     }
 
     MendingReport run() {
@@ -90,10 +93,14 @@ public:
     }
 
 private:
-    enum Level : std::uint8_t { none, first_try, second_try, exact };
+    /// A place where nothing is thinned out.
+    struct Ball {
+        Point3 center;
+        double radius = 0.0;
+        bool holds(const Point3& p) const { return dot(p - center, p - center) <= radius * radius; }
+    };
     struct Region {
         std::vector<Index> faces;
-        std::uint8_t level = first_try;
         bool is_whole = false;
         std::size_t triangles = 0;
     };
@@ -103,19 +110,18 @@ private:
         for (bool again = true; again;) {
             again = false;
             regions_.clear();
-            region_of_.assign(level_.size(), no_index);
-            for (Index seed = 0; seed < level_.size(); ++seed) {
-                if (level_[seed] == none || region_of_[seed] != no_index) continue;
+            region_of_.assign(in_set_.size(), no_index);
+            for (Index seed = 0; seed < in_set_.size(); ++seed) {
+                if (in_set_[seed] == 0 || region_of_[seed] != no_index) continue;
                 Region region;
                 region.faces.assign(1, seed);
                 const auto number = static_cast<Index>(regions_.size());
                 region_of_[seed] = number;
                 for (std::size_t at = 0; at < region.faces.size(); ++at) {
                     const Index f = region.faces[at];
-                    region.level = std::max(region.level, level_[f]);
                     for (const Index h : layout_.faces[f])
                         if (const Index g = patcher_.face_beside(h ^ 1U);
-                            g != no_index && level_[g] != none && region_of_[g] == no_index) {
+                            g != no_index && in_set_[g] != 0 && region_of_[g] == no_index) {
                             region_of_[g] = number;
                             region.faces.push_back(g);
                         }
@@ -127,8 +133,7 @@ private:
             for (Region& region : regions_) {
                 if (find_patch(region) != nullptr) continue;
                 again = true;
-                for (const Index f : patcher_.grow(region.faces))
-                    level_[f] = std::max<std::uint8_t>(level_[f], first_try);
+                for (const Index f : patcher_.grow(region.faces)) in_set_[f] = 1;
             }
         }
     }
@@ -143,28 +148,26 @@ private:
     const Point3& node_point(Index vertex) const { return layout_.graph.nodes[layout_.nodes[vertex]].point; }
 
     const RegionPatch* find_patch(const Region& region) {
-        const auto key = std::pair{region.faces, region.level};
-        auto found = patches_.find(key);
+        auto found = patches_.find(region.faces);
         if (found == patches_.end()) {
             std::optional<RegionPatch> patch = patcher_.make(region.faces);
-            if (patch) thin(*patch, region.level);
-            found = patches_.emplace(key, std::move(patch)).first;
+            if (patch) thin(*patch);
+            found = patches_.emplace(region.faces, std::move(patch)).first;
         }
         return found->second ? &*found->second : nullptr;
     }
-    void thin(RegionPatch& patch, std::uint8_t level) const {
-        constexpr std::array<double, 4> parts{0.0, 1.0, 0.3, 1e-4}, shares{0.0, 0.1, 0.03, 0.0};
+    void thin(RegionPatch& patch) const {
         ThinningRule rule;
-        rule.tolerance = parts[level] * rule_.tolerance;
-        rule.side_tolerance = parts[level] * rule_.side_tolerance;
-        rule.side_share = shares[level];
+        rule.tolerance = rule_.tolerance;
+        rule.side_tolerance = rule_.side_tolerance;
+        rule.side_share = 0.1;
         rule.is_fixed.assign(patch.outer.size() + patch.inner.size(), 1);
         for (std::size_t i = 0; i < patch.inner.size(); ++i) {
             const RegionVertex& v = patch.inner[i];
-            rule.is_fixed[patch.outer.size() + i] =
-                v.kind == VertexKind::corner || v.on_minor_edge || (v.source != no_index && is_fixed_[v.source] != 0)
-                    ? 1
-                    : 0;
+            const bool is_fixed =
+                v.kind == VertexKind::corner || v.on_minor_edge || (v.source != no_index && is_fixed_[v.source] != 0) ||
+                std::any_of(kept_.begin(), kept_.end(), [&](const Ball& b) { return b.holds(v.point); });
+            rule.is_fixed[patch.outer.size() + i] = is_fixed ? 1 : 0;
         }
         thin_out(patch, points_of(patch), judge_, rule, control_);
     }
@@ -201,7 +204,7 @@ private:
         std::vector<Index> ring;
         for (std::size_t q = 0; q < base_.polygon_count(); ++q) {
             const Index parent = base_.parent(q);
-            if (parent != no_index && level_[parent] != none) continue;
+            if (parent != no_index && in_set_[parent] != 0) continue;
             const auto old = base_.polygon(q);
             ring.clear();
             for (std::size_t i = 0; i < old.size(); ++i) {
@@ -236,12 +239,11 @@ private:
         report.split_quads = damage.split;
         std::vector<Index> broken = damage.polygons;
         if (!regions_.empty()) add_repeated_sides(broken);
-        add_missed_creases(broken);
-        if (broken.empty() && !regions_.empty()) {
-            // What is allowed has shrunk with what has become exact.
-            is_strict_ = true;
-            reach_ = 0.0;
-            add_missed_creases(broken);
+        if (rule_.reach > 0.0) {
+            add_missed_creases(broken, 0.9 * rule_.reach);
+        } else if (broken.empty() && add_missed_creases(broken, huge) > 0.9 * reach() && !control_.cancelled()) {
+            // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
+            add_missed_creases(broken, 0.97 * bound());
         }
         if (rule_.error > 0.0) add_far(broken);
         std::sort(broken.begin(), broken.end());
@@ -253,8 +255,8 @@ private:
             const Index f = result_.parent(q);
             report.left.push_back(result_.points[result_.polygon(q)[0]]);
             if (f == no_index) continue;
-            if (level_[f] == none) {
-                level_[f] = first_try;
+            if (in_set_[f] == 0) {
+                in_set_[f] = 1;
                 has_changed = true;
             } else if (region_of_[f] != no_index) {  // not one that has just joined
                 broken_patches[region_of_[f]].push_back(q);
@@ -264,16 +266,30 @@ private:
             const Region& region = regions_[r];
             if (region.is_whole) continue;
             has_changed = true;
-            if (region.level < exact) {
-                for (const Index g : region.faces) level_[g] = region.level + 1;
-                continue;
-            }
-            // Larger, it may do at the first try again.
-            for (const Index g : region.faces) level_[g] = first_try;
-            for (const Index g : faces_around(region, polygons, 1 + report.rounds / 10))
-                level_[g] = std::max<std::uint8_t>(level_[g], first_try);
+            std::vector<Index> beyond_help;
+            for (const Index q : polygons)
+                if (!keep(q)) beyond_help.push_back(q);
+            if (beyond_help.size() < polygons.size()) patches_.erase(region.faces);
+            if (!beyond_help.empty())
+                for (const Index g : faces_around(region, beyond_help, 1 + report.rounds / 10)) in_set_[g] = 1;
         }
         return has_changed;
+    }
+
+    /// Nothing is thinned out any more at this polygon. False: it has been so before.
+    bool keep(Index q) {
+        const auto ring = result_.polygon(q);
+        Ball ball;
+        for (const Index v : ring)
+            ball.center = ball.center + (1.0 / static_cast<double>(ring.size())) * result_.points[v];
+        for (const Index v : ring) ball.radius = std::max(ball.radius, distance(ball.center, result_.points[v]));
+        if (std::any_of(kept_.begin(), kept_.end(), [&](const Ball& b) {
+                return std::all_of(ring.begin(), ring.end(), [&](Index v) { return b.holds(result_.points[v]); });
+            }))
+            return false;
+        ball.radius *= 1.5;
+        kept_.push_back(ball);
+        return true;
     }
 
     /// The region and what touches its border where polygons of its patch are broken; all around, if they do not touch
@@ -292,9 +308,10 @@ private:
         return grown;
     }
 
-    /// Creases and minor corners that nothing of the result is near: the polygons below them.
-    void add_missed_creases(std::vector<Index>& broken) {
-        if (mesh_.minor_edges.empty() && mesh_.minor_corners.empty() && mesh_.curves.empty()) return;
+    /// Creases and minor corners that nothing of the result is as near as `limit`: the polygons below them. Returns how
+    /// far the farthest is.
+    double add_missed_creases(std::vector<Index>& broken, double limit) const {
+        if (mesh_.minor_edges.empty() && mesh_.minor_corners.empty() && mesh_.curves.empty()) return 0.0;
         std::vector<Triangle> edges, vertices, filled;
         const auto id = [](Index v) { return VertexId{v}; };
         std::vector<Index> polygon_of;
@@ -313,16 +330,11 @@ private:
         }
         const core::TriangleTree edge_tree(result_.points, edges), vertex_tree(result_.points, vertices),
             surface(result_.points, filled);
-        // What was near enough at first stays near enough, or each region that becomes exact would condemn the next
-        // one.
-        if (reach_ == 0.0)
-            reach_ = rule_.reach > 0.0 ? rule_.reach
-                                       : std::max(largest_distance(surface, triangles), 1e-6 * judge_.diagonal);
-        // Samples find less than the bound that the check goes by: at first a quarter is left for that.
-        const double square = (rule_.reach > 0.0 || is_strict_ ? 0.8 : 1.5625) * reach_ * reach_;
+        double farthest = 0.0;
         const auto demand = [&](const core::TriangleTree& tree, const Point3& p) {
-            if (tree.find_nearest(p).squared_distance > square)
-                broken.push_back(polygon_of[surface.find_nearest(p).triangle]);
+            const double away = std::sqrt(tree.find_nearest(p).squared_distance);
+            farthest = std::max(farthest, away);
+            if (away > limit) broken.push_back(polygon_of[surface.find_nearest(p).triangle]);
         };
         for (const Index v : mesh_.minor_corners) demand(vertex_tree, mesh_.points[v]);
         for (const Index e : mesh_.minor_edges)
@@ -330,17 +342,32 @@ private:
         for (Index e = 0; e < mesh_.edge_curves.size(); ++e)
             if (mesh_.edge_curves[e] != no_index)
                 for (double s = 0.0; s <= 1.0; s += 0.125) demand(edge_tree, mesh_.point_on(e, s));
+        return farthest;
     }
-    /// Of the input's vertices from the result, and of its triangles' middles, sides and corners from the input.
-    double largest_distance(const core::TriangleTree& surface, const CoarseMesh& triangles) const {
-        double square = 0.0;
-        for (const Point3& p : mesh_.points) square = std::max(square, surface.find_nearest(p).squared_distance);
+    /// The proved distance of the result, for every way to fill its polygons.
+    double bound() const {
+        PolygonMesh result{result_.points, {}, result_.offsets}, input{judge_.input.positions, {}, {0}};
+        for (const Index v : result_.corners) result.corners.push_back(VertexId{v});
+        for (const Triangle& t : judge_.input.triangles) {
+            input.corners.insert(input.corners.end(), t.begin(), t.end());
+            input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
+        }
+        DistanceOptions options;
+        options.samples = 10000;
+        return measure_distance(result, input, options, control_).hausdorff_bound;
+    }
+
+    /// Of the input's vertices from the result: less than the bound.
+    double reach() const {
+        std::vector<Triangle> filled;
+        const CoarseMesh triangles = make_triangles(result_, judge_.tree);
         for (std::size_t q = 0; q < triangles.polygon_count(); ++q) {
             const auto t = triangles.polygon(q);
-            const Point3 &a = triangles.points[t[0]], &b = triangles.points[t[1]], &c = triangles.points[t[2]];
-            for (const Point3& p : {(1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a), a, b, c})
-                square = std::max(square, judge_.tree.find_nearest(p).squared_distance);
+            filled.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
         }
+        const core::TriangleTree surface(result_.points, filled);
+        double square = 0.0;
+        for (const Point3& p : mesh_.points) square = std::max(square, surface.find_nearest(p).squared_distance);
         return std::sqrt(square);
     }
 
@@ -385,18 +412,18 @@ private:
     const WorkMesh& mesh_;
     const Judge& judge_;
     const MendingRule& rule_;
-    bool is_strict_ = false;
-    double reach_ = 0.0;  // how far a crease may be from the nearest edge; 0: not known yet
+    static constexpr double huge = std::numeric_limits<double>::infinity();
     const CoarseMesh base_;
     CoarseMesh& out_;
     const RunControl& control_;
     const std::vector<std::uint8_t> is_fixed_;
     RegionPatcher patcher_;
 
-    std::vector<std::uint8_t> level_;  ///< per face of the graph
+    std::vector<std::uint8_t> in_set_;  ///< per face of the graph: the input takes its place
+    std::vector<Ball> kept_;
     std::vector<Region> regions_;
     std::vector<Index> region_of_;  ///< per face
-    std::map<std::pair<std::vector<Index>, std::uint8_t>, std::optional<RegionPatch>> patches_;
+    std::map<std::vector<Index>, std::optional<RegionPatch>> patches_;
     CoarseMesh result_;
 };
 
