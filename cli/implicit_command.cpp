@@ -176,6 +176,8 @@ std::vector<std::string> promises_of(const ImplicitCheck& check) {
 }
 
 void verify(Session& session, const ImplicitResult& result, const std::string& function) {
+    session.require_memory(estimate_check_memory(result.certificate),
+                           "the independent check (--no-verify leaves it for later)");
     const ImplicitCheck check = session.timed("check", [&] {
         const GracefulScope graceful;
         return check_implicit(result.mesh, function, result.certificate, session.control());
@@ -338,6 +340,7 @@ ExitCode check_implicit_mesh(Session& session, const MeshDocument& document, con
     parse_expression(source.text, source.name);  // for its message; the check reads the text by itself
     const TriangleMesh mesh = make_triangle_mesh(document);
     const std::string proof = read_text(certificate);
+    session.require_memory(estimate_check_memory(proof), "checking this certificate");
     const ImplicitCheck check = session.timed("check", [&] {
         const GracefulScope graceful;
         return check_implicit(mesh, source.text, proof, session.control());

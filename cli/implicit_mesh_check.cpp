@@ -7,6 +7,7 @@
 #include "frontend/option_table.h"
 #include "implicit_arguments.h"
 #include "interrupt.h"
+#include "machine.h"
 #include "report.h"
 #include "session.h"
 
@@ -55,9 +56,11 @@ ExitCode check_mesh_against_function(Session& session, const MeshDocument& docum
     if (mesh.positions.empty() && box.empty()) throw UsageError("an empty mesh has no place: give the box with --box");
     std::array<Point3, 2> b = box.empty() ? find_box_around(mesh) : std::array<Point3, 2>{};
     if (!box.empty()) b = {{{box[0], box[1], box[2]}, {box[3], box[4], box[5]}}};
+    ImplicitOptions options;
+    options.memory_bytes = available_memory();
     const ImplicitMeshCheck check = session.timed("check", [&] {
         const GracefulScope graceful;
-        return check_mesh_against(mesh, source.text, b[0], b[1], {}, session.control());
+        return check_mesh_against(mesh, source.text, b[0], b[1], options, session.control());
     });
     if (interrupt_flag()) return ExitCode::interrupted;
     report_check(session, check);

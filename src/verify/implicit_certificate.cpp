@@ -2,6 +2,9 @@
 // nothing is allocated that the text does not spell out.
 #include "verify/implicit_certificate.h"
 
+#include <certa/implicit.h>
+
+#include <algorithm>
 #include <charconv>
 #include <functional>
 #include <map>
@@ -188,3 +191,23 @@ ImplicitProductCertificate read_product_certificate(std::string_view text) {
 }
 
 }  // namespace certa::verify
+
+namespace certa {
+
+std::uint64_t estimate_check_memory(std::string_view certificate) {
+    constexpr std::string_view key = "\"octree\"";
+    constexpr std::uint64_t bytes_per_leaf = 3000;
+    std::uint64_t largest = 0;  // factors of a product are checked one after the other
+    for (std::size_t at = certificate.find(key); at != certificate.npos; at = certificate.find(key, at)) {
+        at += key.size();
+        std::uint64_t leaves = 0;
+        const std::size_t first = certificate.find('"', at);
+        for (at = first == certificate.npos ? certificate.size() : first + 1;
+             at < certificate.size() && certificate[at] != '"'; ++at)
+            leaves += certificate[at] != '(' ? 1 : 0;
+        largest = std::max(largest, leaves);
+    }
+    return bytes_per_leaf * largest + certificate.size();
+}
+
+}  // namespace certa

@@ -49,6 +49,16 @@ TEST_F(Checked, AcceptsWhatIsRight) {
     EXPECT_TRUE(check_implicit(result_.mesh, "2*(x^2+y^2+z^2-1)", result_.certificate).ok()) << "the same surface";
 }
 
+TEST_F(Checked, MemoryIsEstimatedFromTheLeavesOfTheLargestOctree) {
+    const std::uint64_t bytes = 3000 * result_.statistics.leaves + result_.certificate.size();
+    EXPECT_EQ(estimate_check_memory(result_.certificate), bytes);
+    const std::string two = result_.certificate + "{\"octree\":\"aa\"}";
+    EXPECT_EQ(estimate_check_memory(two), bytes + two.size() - result_.certificate.size());
+    EXPECT_EQ(estimate_check_memory(""), 0u);
+    EXPECT_EQ(estimate_check_memory("\"octree\""), 8u);
+    EXPECT_EQ(estimate_check_memory("\"octree\":\"(abc"), 3000u * 3 + 14);
+}
+
 TEST_F(Checked, RejectsOtherFunctions) {
     for (const char* other : {"1-x^2-y^2-z^2", "x^2+y^2+z^2-2", "(x-0.5)^2+y^2+z^2-1", "x^2+y^2-1",
                               "x^2+y^2+z^2-1+1/(x-0.3)", "x", "", "x +", "min(x, y)", "x^y", "foo(x)", "x y"}) {
