@@ -148,7 +148,7 @@ void compare(std::uint64_t seed, Counts& counts) {
     const Expression x = Expression::x(), y = Expression::y(), z = Expression::z();
     const Expression f = make(seed, x, y, z);
     certa::ImplicitOptions options;
-    options.max_cells = 40'000;
+    options.max_cells = 20'000;
     options.clip = seed % 4 == 3;
     Forms forms, others;
     const certa::Point3 low{-2.21, -2.13, -2.17}, high{2.11, 2.23, 2.19};
@@ -166,7 +166,7 @@ void compare(std::uint64_t seed, Counts& counts) {
     }
     if (options.clip) return;
     options.engine = certa::ImplicitEngine::plantinga_vegter;
-    options.max_cells = 150'000;
+    options.max_cells = 50'000;
     if (decide(seed, f, low, high, options, others, counts)) {
         ++counts.both_engines;
         if (others != forms) report(seed, "the other engine says otherwise", f, counts);
