@@ -28,7 +28,7 @@ def find_chromium():
 class Browser:
     """`with Browser() as browser:` one page at a time; `errors` collects what pages complain about."""
 
-    def __init__(self, width=1280, height=860, scale=1, timeout=60):
+    def __init__(self, width=1280, height=860, scale=1, timeout=240):
         self.timeout = timeout
         self.errors = []
         self.buffer = b""
