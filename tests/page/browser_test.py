@@ -136,7 +136,7 @@ class PageTest(unittest.TestCase):
             self.browser.open(page or self.page, state)
             type(self).loaded = page is None
             return self.browser.report()
-        return self.do(f"clearTimeout(certa.pending); certa.written = null; history.replaceState(null, '', '#{state}'); certa.arrive()")
+        return self.do(f"clearTimeout(certa.pending); certa.address = null; history.replaceState(null, '', '#{state}'); certa.arrive()")
 
     def tearDown(self):
         errors, self.browser.errors = self.browser.errors, []
@@ -147,6 +147,11 @@ class PageTest(unittest.TestCase):
         self.browser.evaluate(expression)
         self.browser.settle()
         return self.browser.report()
+
+    def go(self, state):
+        """Puts a state into the address, as a link would, and reports when the page has followed."""
+        return self.do("new Promise(done => { addEventListener('hashchange', () => done(), { once: true });"
+                       f"location.hash = '{state}' }})")
 
     def press(self, text):
         """The button with this text, as a user would."""
@@ -232,7 +237,7 @@ class PageTest(unittest.TestCase):
             for at in (0.2, 0.53):
                 with self.subTest(axis=axis, sign=sign, at=at):
                     state = f"file=2&color=plain&clip={'-' if sign < 0 else ''}{axis},{at}"
-                    report = self.do(f"location.hash = '{state}'; new Promise(done => setTimeout(done, 30))")
+                    report = self.go(state)
                     limit = (2 * at - 1) * 2 * 1.0001
                     kept = [t for t in range(384) if sign * (self.block.centre(t, "xyz".index(axis)) - 2) <= limit]
                     self.assertEqual(report["tetrahedra"], len(kept))
@@ -377,7 +382,7 @@ class PageTest(unittest.TestCase):
         self.assertEqual(self.clicked(state + "0,90", (-1.283, 0, 0.283))["family"], "along k_max")
         self.assertEqual(self.clicked(state + "0,90", (0, -1, 0.4)), {"vertex": "322", "umbilic_half_turns": "wedge"})
         self.assertIsNone(self.clicked(state + "0,-90", (0, 1, 0.4)))
-        alone = self.do("location.hash = 'file=2&theme=light&on=none'; new Promise(done => setTimeout(done, 30))")
+        alone = self.go("file=2&theme=light&on=none")
         self.assertEqual(alone["ground"], 0)
         self.assertLess(alone["covered"], 0.5 * report["covered"])
         self.browser.evaluate("(() => { const list = document.querySelector('[aria-label=\"Surface underneath\"]'); list.value = '1'; list.dispatchEvent(new Event('change')); })()")
@@ -387,7 +392,7 @@ class PageTest(unittest.TestCase):
 
     def seen_at(self, state, place):
         """Where a place in space is drawn, from -1 to 1, rightwards and upwards."""
-        self.do(f"clearTimeout(certa.pending); certa.written = null; history.replaceState(null, '', '#{state}'); certa.arrive()")
+        self.do(f"clearTimeout(certa.pending); certa.address = null; history.replaceState(null, '', '#{state}'); certa.arrive()")
         return self.browser.evaluate(
             "(() => { const { scale, origin } = certa.choice.model.entry, { camera } = certa.view;"
             "const times = (m, p) => [0, 1, 2, 3].map(i => p.reduce((sum, x, k) => sum + m.elements[4 * k + i] * x, 0));"
@@ -481,7 +486,7 @@ class PageTest(unittest.TestCase):
         self.assertEqual(self.browser.evaluate("[...document.querySelectorAll('nav a.on b')].map(one => one.textContent)"), ["block"])
 
     def wait(self, condition):
-        deadline = time.monotonic() + 60
+        deadline = time.monotonic() + 240
         while not condition():
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.05)
@@ -533,12 +538,20 @@ class PageTest(unittest.TestCase):
         self.browser.settle()
         self.assertNotEqual(self.browser.evaluate("certa.view.yaw"), before)
         self.assertGreater(self.browser.report()["covered"], 50000)
-        times = self.browser.evaluate("(() => { const times = []; for (let i = 0; i < 9; ++i) { const start = performance.now();"
+        times = self.browser.evaluate("(() => { const times = []; for (let i = 0; i < 5; ++i) { const start = performance.now();"
                                       "certa.view.turn(1, 0); certa.stage.draw(certa.view, 'sharp'); times.push(performance.now() - start); } return times.sort((a, b) => a - b); })()")
-        print(f"202,400 triangles: scripts take {times[4]:.2f} ms a frame (median of 9)")
-        self.assertLess(times[4], 50)  # some 0.2 ms on an idle machine: nothing is computed anew for a frame
-        clipped = self.do("location.hash = 'clip=x,0.5'; new Promise(done => setTimeout(done, 30))")
+        print(f"202,400 triangles: scripts take {times[2]:.2f} ms a frame (median of 5)")
+        self.assertLess(times[2], 50)  # some 0.2 ms on an idle machine: nothing is computed anew for a frame
+        clipped = self.go("clip=x,0.5")
         self.assertLess(abs(clipped["triangles"] - 101200), 2000)
+
+    def test_a_link_is_followed_while_the_address_waits_to_be_written(self):
+        self.open("file=2&clip=off")
+        # The timer that writes the address after a turn fires between the link's click and the page's hearing of it.
+        report = self.do("new Promise(done => { addEventListener('hashchange', () => done(), { once: true });"
+                         "const later = window.setTimeout; let write; window.setTimeout = (task) => { write = task; };"
+                         "certa.view.turn(20, 0); window.setTimeout = later; location.hash = 'file=2&clip=x,0.5'; write(); })")
+        self.assertEqual(report["clip"], {"axis": "x", "at": 0.5})
 
     def test_a_notebook_shows_the_page_inline(self):
         """What Jupyter puts into the output of a cell: the page in a sandboxed frame that has no origin and no address."""

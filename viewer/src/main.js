@@ -51,7 +51,9 @@ class App {
 
   /// Takes everything from the address.
   arrive() {
-    if (location.hash === this.written) return;
+    if (location.hash === this.address) return;
+    clearTimeout(this.pending);
+    this.address = location.hash;
     this.state = stateOf(location.hash);
     this.view.reset();
     const view = this.state.view;
@@ -251,9 +253,10 @@ class App {
   remember() {
     clearTimeout(this.pending);
     this.pending = setTimeout(() => {
-      this.written = hashOf(this.state);
+      if (location.hash !== this.address) return; // a link was followed meanwhile: arrive() is about to be called
       try {
-        history.replaceState(null, '', this.written || location.pathname + location.search);
+        history.replaceState(null, '', hashOf(this.state) || location.pathname + location.search);
+        this.address = location.hash;
       } catch {
         // Some browsers forbid this to local files, and limit how often: the address then stays as it was.
       }
