@@ -529,19 +529,21 @@ class PageTest(unittest.TestCase):
     def test_more_than_200000_triangles_are_followed(self):
         """What scripts take of a frame; the drawing itself is the graphics card's, here the processor's, and not judged."""
         self.write("large.ply", torus(460, 220))
+        self.browser.resize(660, 400)
+        self.addCleanup(self.browser.resize, 1000, 700)
         report = self.open("", self.make("large.html", "large.ply"))
         self.assertEqual(report["triangles"], 202400)
         self.assertEqual(report["edges"], "sharp")  # all edges would hide the surface
         before = self.browser.evaluate("certa.view.yaw")
-        for kind, x, y in (("mousePressed", 300, 300), ("mouseMoved", 380, 330), ("mouseReleased", 380, 330)):
+        for kind, x, y in (("mousePressed", 200, 200), ("mouseMoved", 280, 230), ("mouseReleased", 280, 230)):
             self.browser.mouse(kind, x, y, button="left", buttons=1, clickCount=1)
         self.browser.settle()
         self.assertNotEqual(self.browser.evaluate("certa.view.yaw"), before)
-        self.assertGreater(self.browser.report()["covered"], 50000)
-        times = self.browser.evaluate("(() => { const times = []; for (let i = 0; i < 5; ++i) { const start = performance.now();"
+        self.assertGreater(self.browser.report()["covered"], 15000)
+        times = self.browser.evaluate("(() => { const times = []; for (let i = 0; i < 3; ++i) { const start = performance.now();"
                                       "certa.view.turn(1, 0); certa.stage.draw(certa.view, 'sharp'); times.push(performance.now() - start); } return times.sort((a, b) => a - b); })()")
-        print(f"202,400 triangles: scripts take {times[2]:.2f} ms a frame (median of 5)")
-        self.assertLess(times[2], 50)  # some 0.2 ms on an idle machine: nothing is computed anew for a frame
+        print(f"202,400 triangles: scripts take {times[1]:.2f} ms a frame (median of 3)")
+        self.assertLess(times[1], 50)  # some 0.2 ms on an idle machine: nothing is computed anew for a frame
         clipped = self.go("clip=x,0.5")
         self.assertLess(abs(clipped["triangles"] - 101200), 2000)
 
