@@ -257,7 +257,7 @@ private:
     /// A corner of the intersection of two facets: the open simplices that carry it, as ascending points.
     struct Node {
         std::array<Ids, 2> carriers;
-        friend auto operator<=>(const Node&, const Node&) = default;
+        friend auto operator<=>(const Node&, const Node&) = default;  // NOLINT(modernize-use-nullptr)
     };
     enum class Along : std::uint8_t { no_side, side_of_first, side_of_second };
     struct Link {

@@ -48,7 +48,7 @@ struct Finding {
     FindingKind kind{};
     std::uint32_t first = 0, second = 0;     ///< elements, see FindingKind; of one kind ascending
     std::uint32_t piece_a = 0, piece_b = 0;  ///< the pieces that show it
-    friend auto operator<=>(const Finding&, const Finding&) = default;
+    friend auto operator<=>(const Finding&, const Finding&) = default;  // NOLINT(modernize-use-nullptr)
 };
 
 /// All findings, sorted; without `every_piece` one per kind and pair of elements.

@@ -274,6 +274,7 @@ private:
 
 // ---- Grammar --------------------------------------------------------------------------------------------------------
 
+// NOLINTBEGIN(readability-identifier-naming): rules are named as PEGTL's own
 namespace grammar {
 
 using namespace pegtl;  // NOLINT: the grammar reads as one
@@ -346,6 +347,7 @@ template <class Rule>
 using control = must_if<Messages, normal, false>::control<Rule>;
 
 }  // namespace grammar
+// NOLINTEND(readability-identifier-naming)
 
 // ---- Actions --------------------------------------------------------------------------------------------------------
 

@@ -53,10 +53,10 @@ public:
     const expression::Jet<double>& jet(const Point3& place);
 
 private:
-    template <int order>
+    template <int Order>
     const expression::Jet<Interval>& enclose(const Region& box) {
         ++count_;
-        return workspace_.evaluate<order>(box);
+        return workspace_.evaluate<Order>(box);
     }
     const expression::Tape& tape_;
     std::uint64_t count_ = 0;

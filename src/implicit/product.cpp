@@ -23,7 +23,6 @@ namespace {
 
 using expression::hessian_index;
 using expression::Jet;
-using expression::Node;
 using expression::Op;
 using Reason = ImplicitObstacle::Reason;
 using Clock = std::chrono::steady_clock;
