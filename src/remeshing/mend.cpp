@@ -243,7 +243,7 @@ private:
             add_missed_creases(broken, 0.9 * rule_.reach);
         } else if (broken.empty() && add_missed_creases(broken, huge) > 0.9 * reach() && !control_.cancelled()) {
             // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
-            add_missed_creases(broken, 0.97 * bound());
+            add_missed_creases(broken, 0.94 * bound());
         }
         if (rule_.error > 0.0) add_far(broken);
         std::sort(broken.begin(), broken.end());
@@ -337,11 +337,16 @@ private:
             if (away > limit) broken.push_back(polygon_of[surface.find_nearest(p).triangle]);
         };
         for (const Index v : mesh_.minor_corners) demand(vertex_tree, mesh_.points[v]);
-        for (const Index e : mesh_.minor_edges)
-            for (double s = 0.0; s <= 1.0; s += 0.125) demand(edge_tree, mesh_.point_on(e, s));
+        std::vector<Index> creases = mesh_.minor_edges;
         for (Index e = 0; e < mesh_.edge_curves.size(); ++e)
-            if (mesh_.edge_curves[e] != no_index)
-                for (double s = 0.0; s <= 1.0; s += 0.125) demand(edge_tree, mesh_.point_on(e, s));
+            if (mesh_.edge_curves[e] != no_index) creases.push_back(e);
+        double total = 0.0;
+        for (const Index e : creases) total += mesh_.lengths[e];
+        for (const Index e : creases) {
+            constexpr double samples = 20000.0;
+            const double steps = 4.0 + std::ceil(samples * mesh_.lengths[e] / total);
+            for (double k = 0.0; k <= steps; k += 1.0) demand(edge_tree, mesh_.point_on(e, k / steps));
+        }
         return farthest;
     }
     /// The proved distance of the result, for every way to fill its polygons.

@@ -11,6 +11,7 @@
 #include <cmath>
 
 #include "core/assert.h"
+#include "core/parallel.h"
 #include "core/triangle_tree.h"
 #include "remeshing/mend.h"
 #include "remeshing/placement.h"
@@ -89,13 +90,22 @@ public:
 private:
     bool prepare();
     SpacingRule rule_of(double error) const;
-    double start_error();
+    double start_error(double count = 0.0);
     Draft draft(double error);
     void refine(const Flaws& flaws, const Graph& graph, const Spacing& spacing);
     std::vector<Index> crowded_vertices(const CoarseMesh& mesh) const;
     CoarseMesh fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const;
     double count_of(const Draft& draft) const;
-    void search();
+    double wanted_count() const {
+        return static_cast<double>(options_.vertices ? *options_.vertices : options_.faces.value_or(0));
+    }
+    double final_count(const CoarseMesh& mesh) const {
+        return static_cast<double>(options_.vertices ? mesh.points.size() : mesh.polygon_count());
+    }
+    static double mended_share(const CoarseMesh& mesh, const RemeshStatistics& statistics) {
+        return static_cast<double>(statistics.mended_triangles) / static_cast<double>(mesh.polygon_count());
+    }
+    void search(double wanted);
     void meet_error();
     double refine_where_far(double error, double limit);
     double far_share(double limit) const;
@@ -138,9 +148,8 @@ SpacingRule Remesher::rule_of(double error) const {
     return rule;
 }
 
-double Remesher::start_error() {
-    if (!options_.vertices && !options_.faces) return 1.4 * wanted_error();
-    const double wanted = static_cast<double>(options_.vertices ? *options_.vertices : *options_.faces);
+double Remesher::start_error(double wanted) {
+    if (wanted == 0.0) return 1.4 * wanted_error();
     double error = 4e-3 * mesh_.diagonal;
     for (int round = 0; round < 4; ++round)
         error *= std::clamp(expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_)) / wanted,
@@ -296,9 +305,8 @@ double Remesher::count_of(const Draft& draft) const {
 }
 
 /// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps is varied too.
-void Remesher::search() {
-    const double wanted = static_cast<double>(options_.vertices ? *options_.vertices : *options_.faces);
-    double error = start_error(), best_miss = 1e300, low = 0.0, high = 1e300;
+void Remesher::search(double wanted) {
+    double error = start_error(wanted), best_miss = 1e300, low = 0.0, high = 1e300;
     constexpr std::array<double, 12> gaps{0.75, 0.75, 0.75, 0.75, 0.75, 0.7, 0.8, 0.7, 0.8, 0.66, 0.85, 0.75};
     for (const double gap : gaps) {
         if (control_.cancelled()) return;
@@ -317,10 +325,6 @@ void Remesher::search() {
         if (low > 0.0 && high < 1e300 && (next <= low || next >= high)) next = std::sqrt(low * high);
         error = next;
     }
-    if (best_miss > 0.05)
-        result_.statistics.notes.push_back("the nearest count that was found is " +
-                                           std::to_string(static_cast<std::size_t>(count_of(*best_))) + ", not " +
-                                           std::to_string(static_cast<std::size_t>(wanted)));
 }
 
 /// Caps the spacing around vertices and triangle centres of either surface that are farther than `limit` from the
@@ -405,9 +409,9 @@ void Remesher::meet_error() {
             // Warped quads are what a bound for all ways to fill them fails on: cut more and more of them.
             options.bound = true;
             const bool may_cut = options_.output == RemeshOutput::quad_dominant && options_.subdivide == 0;
-            for (const double limit : {0.75, 0.3, 0.1, 0.0}) {
+            for (const double limit : {0.9, 0.8, 0.6, 0.0}) {
                 if (control_.cancelled()) return;
-                if (limit < (round < 2 ? 0.75 : round < 3 ? 0.3 : 0.0)) break;  // more lines first: they keep quads
+                if (limit < (round < 2 ? 0.8 : round < 3 ? 0.6 : 0.0)) break;  // more lines first: they keep quads
                 emit(mended(may_cut ? cut_warped(placed_, limit * wanted) : placed_, wanted));
                 distance = measure_distance(result_.mesh, input, options, control_);
                 reached = distance.hausdorff_bound;
@@ -485,24 +489,38 @@ CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
     return polygons;
 }
 
-/// Quads whose diagonals are farther apart than `limit`, or that are not convex, become triangles on the diagonal
-/// nearer to the input: what an error is proved for must not depend on how a reader fills a quad.
+/// Quads that are farther than `limit` from the input on either diagonal, or that are not convex, become triangles on
+/// the diagonal nearer to the input: what an error is proved for must not depend on how a reader fills a quad.
 CoarseMesh Remesher::cut_warped(const CoarseMesh& mesh, double limit) const {
     const CoarseMesh triangles = make_triangles(mesh, *tree_);
+    const auto is_far = [&](const Point3& a, const Point3& b, const Point3& c) {
+        for (int u = 0; u <= 4; ++u)
+            for (int v = 0; u + v <= 4; ++v) {
+                const Point3 p = (0.25 * u) * a + (0.25 * v) * b + (0.25 * (4 - u - v)) * c;
+                if (tree_->find_nearest(p).squared_distance > limit * limit) return true;
+            }
+        return false;
+    };
+    std::vector<std::uint8_t> is_warped(mesh.polygon_count(), 0);
+    core::parallel_for(is_warped.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            const auto ring = mesh.polygon(i);
+            if (ring.size() != 4) continue;
+            const Point3 &a = mesh.points[ring[0]], &b = mesh.points[ring[1]], &c = mesh.points[ring[2]],
+                         &d = mesh.points[ring[3]];
+            const Point3 n = cross(c - a, d - b);
+            const bool is_convex = norm(n) > 0.0 && dot(cross(b - a, d - a), n) > 0.0 &&
+                                   dot(cross(c - b, a - b), n) > 0.0 && dot(cross(d - c, b - c), n) > 0.0 &&
+                                   dot(cross(a - d, c - d), n) > 0.0;
+            is_warped[i] =
+                !is_convex || is_far(a, b, c) || is_far(a, c, d) || is_far(a, b, d) || is_far(b, c, d) ? 1 : 0;
+        }
+    });
     CoarseMesh out = mesh.without_polygons();
     for (std::size_t i = 0, t = 0; i < mesh.polygon_count(); ++i) {
         const auto ring = mesh.polygon(i);
         const std::size_t end = t + ring.size() - 2;
-        bool warped = false;
-        if (ring.size() == 4) {
-            const Point3 &a = mesh.points[ring[0]], &b = mesh.points[ring[1]], &c = mesh.points[ring[2]],
-                         &d = mesh.points[ring[3]];
-            const Point3 n = cross(c - a, d - b);
-            warped = !(norm(n) > 0.0) || std::abs(dot(b - a, n)) > limit * norm(n) ||
-                     dot(cross(b - a, d - a), n) <= 0.0 || dot(cross(c - b, a - b), n) <= 0.0 ||
-                     dot(cross(d - c, b - c), n) <= 0.0 || dot(cross(a - d, c - d), n) <= 0.0;
-        }
-        if (warped)
+        if (is_warped[i] != 0)
             for (std::size_t k = t; k < end; ++k) out.add_polygon(triangles.polygon(k), mesh.parent(i));
         else
             out.add_polygon(ring, mesh.parent(i));
@@ -592,14 +610,45 @@ void Remesher::finish_count() {
         give_input(options_.vertices || options_.faces ? mesh_.diagonal : best_->error);
         return;
     }
-    const CoarseMesh mesh = mended(placed_, 0.0);
+    const double wanted = wanted_count();
+    CoarseMesh mesh = mended(placed_, 0.0);
+    // What mending adds, the network has to do without.
+    for (int round = 0; round < 2 && options_.subdivide == 0 && final_count(mesh) > 1.04 * wanted; ++round) {
+        if (control_.cancelled()) return;
+        const double before = final_count(placed_), added = final_count(mesh) - before;
+        const double aim = std::max(before * wanted / (before + added), wanted - 1.3 * added);
+        Draft kept = std::move(*best_);
+        CoarseMesh kept_placed = std::move(placed_);
+        const RemeshStatistics statistics = result_.statistics;
+        best_.reset();
+        search(aim);
+        if (control_.cancelled() || !best_) return;
+        const bool is_whole = finish();
+        CoarseMesh fewer;
+        if (is_whole) fewer = mended(placed_, 0.0);
+        const double share = mended_share(mesh, statistics);
+        const bool is_nearer = std::abs(std::log(final_count(fewer) / wanted)) < std::log(final_count(mesh) / wanted);
+        if (is_whole && is_nearer && mended_share(fewer, result_.statistics) < share + 0.15) {
+            mesh = std::move(fewer);
+            continue;
+        }
+        best_.emplace(std::move(kept));
+        placed_ = std::move(kept_placed);
+        const auto seconds = result_.statistics.stage_seconds;
+        result_.statistics = statistics;
+        result_.statistics.stage_seconds = seconds;
+        break;
+    }
     if (control_.cancelled()) return;
     emit(mesh);
-    const double before = static_cast<double>(placed_.points.size()), after = static_cast<double>(mesh.points.size());
-    if (options_.subdivide == 0 && after > 1.05 * before)
-        result_.statistics.notes.push_back(
-            "mending has added " + std::to_string(mesh.points.size() - placed_.points.size()) + " vertices to the " +
-            std::to_string(placed_.points.size()) + " that the count asked for");
+    if (options_.subdivide > 0) return;
+    const double before = final_count(placed_), after = final_count(mesh);
+    if (std::abs(std::log(after / wanted)) <= 0.05) return;
+    std::string note = "the nearest count that was found is " + std::to_string(static_cast<std::size_t>(after)) +
+                       ", not " + std::to_string(static_cast<std::size_t>(wanted));
+    if (after > 1.05 * before)
+        note += "; mending has added " + std::to_string(static_cast<std::size_t>(after - before)) + " of them";
+    result_.statistics.notes.push_back(std::move(note));
 }
 
 void Remesher::emit(const CoarseMesh& coarse) {
@@ -626,7 +675,7 @@ void Remesher::emit(const CoarseMesh& coarse) {
 RemeshResult Remesher::run() {
     if (prepare()) {
         if (options_.vertices || options_.faces) {
-            search();
+            search(wanted_count());
             if (best_ && !control_.cancelled()) finish_count();
         } else {
             meet_error();
