@@ -3,8 +3,11 @@
 // Plan: segment against triangle by five orientations, in the plane where they are coplanar; two triangles meet if and
 // only if an edge of one meets the other. Triangles that share a corner meet elsewhere if and only if the edge opposite
 // to it in one meets the other: what they share beyond the corner is a convex set that ends on one of those edges.
+// Before that, doubles look for a plane between the two: most pairs whose boxes meet are far apart in one plane.
 #include "verify/surface_contacts.h"
 
+#include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "verify/predicates.h"
@@ -55,6 +58,67 @@ bool in_plane_meets(const Point3& p, const Point3& q, const Corners& t) {
         negative = negative || side < 0;
     }
     return !(positive && negative);  // p inside
+}
+
+using Arrows = std::array<Point3, 3>;
+
+Point3 minus(const Point3& a, const Point3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+Point3 product(const Point3& a, const Point3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+Point3 shortened(const Point3& a) {
+    const double length = std::sqrt(a.x * a.x + a.y * a.y + a.z * a.z);
+    return {a.x / length, a.y / length, a.z / length};
+}
+
+/// The least (side -1) or largest (+1) that n . p can be over the corners from `first` on, for any n, exact or not:
+/// each of p's differences and of the five operations is off by half a unit in the last place, products perhaps by
+/// underflow.
+double extreme(const Arrows& corners, std::size_t first, const Point3& n, double side) {
+    double most = -std::numeric_limits<double>::infinity();
+    for (std::size_t i = first; i < 3; ++i) {
+        const double x = n.x * corners[i].x, y = n.y * corners[i].y, z = n.z * corners[i].z;
+        const double error = 0x1p-49 * (std::abs(x) + std::abs(y) + std::abs(z)) + 0x1p-1000;
+        const double value = side * (x + y + z) + error;
+        if (!std::isfinite(value)) return side * std::numeric_limits<double>::infinity();
+        most = std::max(most, value);
+    }
+    return side * most;
+}
+
+/// Whether doubles find a plane that separates the triangles strictly, but for a common corner s[0] = t[0]. False says
+/// nothing, and so do overflow and underflow.
+bool are_clearly_apart(const Corners& s, const Corners& t, bool share_corner) {
+    Arrows a, b;
+    for (std::size_t i = 0; i < 3; ++i) a[i] = minus(s[i], s[0]), b[i] = minus(t[i], s[0]);
+    const Point3 normal_a = product(a[1], a[2]), normal_b = product(minus(b[1], b[0]), minus(b[2], b[0]));
+    const auto separates = [&](const Point3& n) {
+        const std::size_t first = share_corner ? 1 : 0;
+        const auto below = [&](const Arrows& low, const Arrows& high) {
+            const double top = extreme(low, first, n, 1.0), bottom = extreme(high, first, n, -1.0);
+            return share_corner ? top < 0.0 && bottom > 0.0 : top < bottom;
+        };
+        return below(a, b) || below(b, a);
+    };
+    if (!share_corner) {
+        if (separates(normal_a) || separates(normal_b)) return true;
+        for (std::size_t i = 0; i < 3; ++i) {
+            const std::size_t k = (i + 1) % 3;
+            if (separates(product(normal_a, minus(a[k], a[i]))) || separates(product(normal_b, minus(b[k], b[i]))))
+                return true;
+        }
+        return false;
+    }
+    // Between the planes of both, or between a side of one and a side of the other.
+    const Point3 m = shortened(normal_a), n = shortened(normal_b);
+    if (separates(minus(m, n)) || separates({m.x + n.x, m.y + n.y, m.z + n.z})) return true;
+    for (std::size_t i = 1; i < 3; ++i) {
+        for (std::size_t k = 1; k < 3; ++k) {
+            const Point3 u = shortened(a[i]), v = shortened(b[k]);
+            if (separates(product(m, {u.x + v.x, u.y + v.y, u.z + v.z}))) return true;
+        }
+    }
+    return false;
 }
 
 }  // namespace
@@ -113,6 +177,7 @@ bool meet_beyond_shared(const std::vector<Point3>& positions, std::array<std::ui
     const Corners a{positions[s[0]], positions[s[1]], positions[s[2]]},
         b{positions[t[0]], positions[t[1]], positions[t[2]]};
     if (shared == 2) return meet_beyond_edge(a, b);
+    if (are_clearly_apart(a, b, shared == 1)) return false;
     return shared == 1 ? meet_beyond_corner(a, b) : triangles_meet(a, b);
 }
 
