@@ -268,7 +268,7 @@ private:
             has_changed = true;
             std::vector<Index> beyond_help;
             for (const Index q : polygons)
-                if (!keep(q)) beyond_help.push_back(q);
+                if (!keep(q, report.rounds)) beyond_help.push_back(q);
             if (beyond_help.size() < polygons.size()) patches_.erase(region.faces);
             if (!beyond_help.empty())
                 for (const Index g : faces_around(region, beyond_help, 1 + report.rounds / 10)) in_set_[g] = 1;
@@ -277,7 +277,7 @@ private:
     }
 
     /// Nothing is thinned out any more at this polygon. False: it has been so before.
-    bool keep(Index q) {
+    bool keep(Index q, std::size_t round) {
         const auto ring = result_.polygon(q);
         Ball ball;
         for (const Index v : ring)
@@ -287,7 +287,7 @@ private:
                 return std::all_of(ring.begin(), ring.end(), [&](Index v) { return b.holds(result_.points[v]); });
             }))
             return false;
-        ball.radius *= 1.5;
+        ball.radius *= 1.5 * std::pow(2.0, static_cast<double>(std::min<std::size_t>(round / 5, 10)));  // hurries
         kept_.push_back(ball);
         return true;
     }
