@@ -309,9 +309,9 @@ TEST(ConformProtection, SharpMeshesSmallComplexes) {
 }
 
 TEST(ConformProtectionLong, FamiliesSharpAndAll) {
-    expect_mostly_done(run_families(1, 6, {.protection = Protection::sharp, .max_points = 30'000}));
-    expect_mostly_done(run_families(1, 4, {.protection = Protection::all, .max_points = 30'000}));
-    expect_mostly_done(run_families(7, 9, {.protection = Protection::sharp, .gabriel = true, .max_points = 30'000}));
+    expect_mostly_done(run_families(1, 3, {.protection = Protection::sharp, .max_points = 100'000}));
+    expect_mostly_done(run_families(1, 3, {.protection = Protection::all, .max_points = 100'000}));
+    expect_mostly_done(run_families(7, 8, {.protection = Protection::sharp, .gabriel = true, .max_points = 100'000}));
 }
 
 }  // namespace
