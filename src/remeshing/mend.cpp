@@ -276,7 +276,8 @@ private:
         return has_changed;
     }
 
-    /// Nothing is thinned out any more at this polygon. False: it has been so before.
+    /// Nothing is thinned out any more at this polygon, and twice as far around it every five rounds, so that many
+    /// rounds do not creep. False: it has been so before.
     bool keep(Index q, std::size_t round) {
         const auto ring = result_.polygon(q);
         Ball ball;
@@ -287,7 +288,7 @@ private:
                 return std::all_of(ring.begin(), ring.end(), [&](Index v) { return b.holds(result_.points[v]); });
             }))
             return false;
-        ball.radius *= 1.5 * std::pow(2.0, static_cast<double>(std::min<std::size_t>(round / 5, 10)));  // hurries
+        ball.radius *= 1.5 * std::pow(2.0, static_cast<double>(std::min<std::size_t>(round / 5, 10)));
         kept_.push_back(ball);
         return true;
     }
