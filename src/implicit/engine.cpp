@@ -19,6 +19,7 @@
 #include "implicit/simplify.h"
 #include "implicit/subdivision.h"
 #include "implicit/surface.h"
+#include "implicit/thicken.h"
 #include "interval/environment.h"
 
 namespace certa {
@@ -71,7 +72,7 @@ public:
             Findings findings = check_conditions(tree_, *triangulation, growth, clusters, tape_, control_, proved_);
             if (control_.cancelled()) return stop({ImplicitObstacle::Reason::cancelled, {}});
             if (findings.offenders.empty()) {
-                if (is_to_be_simplified(findings)) thicken(*triangulation, growth, findings, clusters);
+                if (is_to_be_simplified(findings)) make_room(*triangulation, growth, findings, clusters);
                 return conclude(*triangulation, growth, findings);
             }
             const bool critical = std::any_of(findings.offenders.begin(), findings.offenders.end(),
@@ -146,45 +147,16 @@ private:
         return (error_ || hausdorff_) && !tree_.is_clipped() && !findings.components.empty();
     }
 
-    /// Room for the simplification: the sign of f is forgotten on regular leaves as near to the zero set as the mesh
-    /// may be, so that W may grow into them and its frontier is proved anew (as along a mesh, guided.cpp). Where the
-    /// conditions fail then, leaves remember their signs; if nothing helps all do, and W stays what it was.
-    void thicken(Triangulation& triangulation, Growth& growth, Findings& findings,
-                 const std::vector<Cluster>& clusters) {
+    /// Room for the simplification. All that W has to do is hold the mesh: if there is no thicker one it stays.
+    void make_room(Triangulation& triangulation, Growth& growth, Findings& findings,
+                   const std::vector<Cluster>& clusters) {
         const double reach = 2 * (error_ ? *error_ : *hausdorff_);
-        std::vector<std::int8_t> forgotten(tree_.cells().size(), 0);
-        for (const std::uint32_t leaf : tree_.leaves()) {
-            Cell& cell = tree_.cell(leaf);
-            if (cell.known.slope == 0 || tree_.touches_boundary(cell) || !is_near(cell, reach)) continue;
-            forgotten[leaf] = cell.known.sign;
-            cell.known.sign = 0;
-        }
-        const auto remember = [&](std::uint32_t leaf) {
-            if (forgotten[leaf] != 0) tree_.cell(leaf).known.sign = forgotten[leaf];
-            forgotten[leaf] = 0;
-        };
-        for (int attempt = 0; attempt < 4 && !is_too_large() && !control_.cancelled(); ++attempt) {
-            control_.report("certify", 0.99);
-            Triangulation thick(tree_, field_, signs_);
-            Growth more = grow(thick);
-            Findings found = check_conditions(tree_, thick, more, clusters, tape_, control_, proved_);
-            if (found.offenders.empty()) {
-                triangulation = std::move(thick);
-                growth = std::move(more);
-                findings = std::move(found);
-                return;
-            }
-            for (const std::uint32_t leaf : found.offenders) tree_.visit_around_corners(tree_.cell(leaf), remember);
-        }
-        for (const std::uint32_t leaf : tree_.leaves()) remember(leaf);
-    }
-
-    /// Whether the zero set seems to be within a distance of a leaf.
-    bool is_near(const Cell& cell, double reach) {
-        const Region box = tree_.region_of(cell);
-        const auto& jet = field_.slope(tree_.grid().place(tree_.center_of(cell)));
-        const double half = std::hypot(interval::width(box[0]), interval::width(box[1]), interval::width(box[2])) / 2;
-        return std::fabs(jet.value) <= (reach + half) * std::hypot(jet.gradient[0], jet.gradient[1], jet.gradient[2]);
+        auto thick =
+            thicken({tree_, signs_, clusters, tape_, limits_, [&] { return is_too_large(); }, control_}, reach);
+        if (!thick) return;
+        triangulation = std::move(thick->triangulation);
+        growth = std::move(thick->growth);
+        findings = std::move(thick->findings);
     }
 
     ImplicitResult conclude(const Triangulation& triangulation, const Growth& growth, const Findings& findings) {
