@@ -261,7 +261,7 @@ bool Enclosures::directly(const BoxOfDoubles& box, int axis, int sign) {
     mpfi_set_ui(sum_, 0);
     std::array<double, 3> center;
     for (std::size_t i = 0; i < 3; ++i) {
-        center[i] = box.low[i] / 2 + box.high[i] / 2;
+        center[i] = middle_of(box.low[i], box.high[i]);
         mpfi_sub_d(t_, place_[i], center[i]);
         mpfi_mul(t_, t_, whole.slope[i]);
         mpfi_add(sum_, sum_, t_);
@@ -357,7 +357,7 @@ bool Enclosures::combination_misses_zero(Enclosures& other, double t, const BoxO
     }
     const Values &f = values_[function_.result()], &g = other.values_[other.function_.result()];
     for (std::size_t i = 0; i < 3; ++i) {
-        center[i] = box.low[i] / 2 + box.high[i] / 2;
+        center[i] = middle_of(box.low[i], box.high[i]);
         mpfi_mul_d(t_, g.slope[i], t);
         mpfi_sub(t_, f.slope[i], t_);
         mpfi_sub_d(u_, place_[i], center[i]);

@@ -2,6 +2,7 @@
 // The checker's own reading of expressions and its own enclosures, by MPFI: shares nothing with src/expression.
 #include <mpfi.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <memory>
@@ -75,6 +76,9 @@ struct BoxOfDoubles {
     std::array<double, 3> low, high;
 };
 
+/// Between two finite numbers, about halfway: in the interval, also where halves of tiny numbers are rounded to 0.
+inline double middle_of(double low, double high) { return std::clamp(low / 2 + high / 2, low, high); }
+
 /// Whether visit(part) holds for each of the eight parts of a box (fewer where a side without inside is not cut), up to
 /// the first for which it does not.
 template <class Visit>
@@ -83,7 +87,7 @@ bool holds_on_parts(const BoxOfDoubles& box, const Visit& visit) {
         BoxOfDoubles child = box;
         bool repeated = false;
         for (std::size_t i = 0; i < 3; ++i) {
-            const double middle = box.low[i] / 2 + box.high[i] / 2;
+            const double middle = middle_of(box.low[i], box.high[i]);
             if (!(box.low[i] < middle && middle < box.high[i])) {
                 repeated = repeated || ((part >> i) & 1u) != 0;
                 continue;

@@ -17,7 +17,7 @@ constexpr std::size_t most_boxes = 4'000'000;
 bool is_apart(Enclosures& f, Enclosures& g, const BoxOfDoubles& box) {
     if (f.misses_zero(box) || g.misses_zero(box)) return true;
     std::array<double, 3> center;
-    for (std::size_t a = 0; a < 3; ++a) center[a] = box.low[a] / 2 + box.high[a] / 2;
+    for (std::size_t a = 0; a < 3; ++a) center[a] = middle_of(box.low[a], box.high[a]);
     const std::array<double, 4> at_f = f.guess(center), at_g = g.guess(center);
     double across = 0, square = 0;
     for (std::size_t a = 1; a < 4; ++a) {
@@ -49,7 +49,7 @@ std::string check_apart(const ImplicitFunction& f, const ImplicitFunction& g, co
         for (unsigned k = 0; k < 8; ++k) {
             Part child{part.box, part.depth + 1};
             for (std::size_t a = 0; a < 3; ++a) {
-                const double middle = part.box.low[a] / 2 + part.box.high[a] / 2;
+                const double middle = middle_of(part.box.low[a], part.box.high[a]);
                 (((k >> a) & 1u) == 0 ? child.box.high : child.box.low)[a] = middle;
             }
             work.push_back(child);

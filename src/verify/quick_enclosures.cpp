@@ -1,57 +1,26 @@
-// Arithmetic on spans: each bound is computed with rounding to nearest and moved outward. A result r that is not
-// infinite differs from the exact one by at most |r| 2^-53 + 2^-1022, even where tiny numbers are flushed to 0; |r|
-// 2^-51 + 2^-1000, subtracted with one more rounding, is more. A bound that is NaN or infinite makes the span useless:
-// no sign is ever read off it.
+// Derivatives up to the second order on spans (span.h), tried before MPFI.
 //
-// Plan: spans; one step of the function at a time, value and gradient; the enclosure or the mean value form on a box;
-// its eight parts.
+// Each danger is met once, and has its test. What is computed from a span that is of no use is of no use either, so
+// poles and the ends of domains need nothing but what division, roots and MPFI say there. A function that is not
+// differentiable everywhere is found from the derivative of one of its steps; all steps have second derivatives where
+// they have first ones. The middle of a box lies in it, so that everything is defined there that is so on the box.
+//
+// Plan: one step of the function at a time, value and derivatives; the enclosure, the mean value form or Taylor's form
+// on a box; its eight parts.
 #include "verify/quick_enclosures.h"
 
-#include <algorithm>
 #include <cfenv>
 #include <cmath>
 #include <cstdlib>
 #include <utility>
 
+#include "core/assert.h"
+
 namespace certa::verify {
 namespace {
 
-Span widened(double low, double high) {
-    return {low - (std::fabs(low) * 0x1p-51 + 0x1p-1000), high + (std::fabs(high) * 0x1p-51 + 0x1p-1000)};
-}
-bool is_usable(const Span& a) { return std::isfinite(a.low) && std::isfinite(a.high) && a.low <= a.high; }
-int sign_of(const Span& a) { return !is_usable(a) ? 0 : a.low > 0 ? 1 : a.high < 0 ? -1 : 0; }
-
-Span operator+(const Span& a, const Span& b) { return widened(a.low + b.low, a.high + b.high); }
-Span operator-(const Span& a, const Span& b) { return widened(a.low - b.high, a.high - b.low); }
-Span operator-(const Span& a) { return {-a.high, -a.low}; }
-Span operator*(const Span& a, const Span& b) {
-    const double p = a.low * b.low, q = a.low * b.high, r = a.high * b.low, s = a.high * b.high;
-    // Not minmax of a list: a NaN has to reach the result.
-    if (!std::isfinite(p + q + r + s)) return {NAN, NAN};
-    return widened(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
-}
-Span operator/(const Span& a, const Span& b) {
-    if (sign_of(b) == 0) return {NAN, NAN};
-    const double p = a.low / b.low, q = a.low / b.high, r = a.high / b.low, s = a.high / b.high;
-    if (!std::isfinite(p + q + r + s)) return {NAN, NAN};
-    return widened(std::min(std::min(p, q), std::min(r, s)), std::max(std::max(p, q), std::max(r, s)));
-}
-Span square(const Span& a) {
-    const double p = a.low * a.low, q = a.high * a.high;
-    if (!std::isfinite(p + q)) return {NAN, NAN};
-    const Span wide = widened(std::min(p, q), std::max(p, q));
-    return {a.low <= 0 && a.high >= 0 ? 0.0 : std::max(wide.low, 0.0), wide.high};
-}
 /// Second derivative k is by these two variables.
 constexpr std::array<std::pair<std::size_t, std::size_t>, 6> pair_of{{{0, 0}, {0, 1}, {0, 2}, {1, 1}, {1, 2}, {2, 2}}};
-
-/// a^n for n >= 1, by squaring: powers of even exponents are squares, never negative.
-Span raised(const Span& a, long n) {
-    if (n == 1) return a;
-    const Span half = raised(a, n / 2);
-    return n % 2 == 0 ? square(half) : square(half) * a;
-}
 
 }  // namespace
 
@@ -62,10 +31,12 @@ QuickEnclosures::QuickEnclosures(const ImplicitFunction& function)
     for (std::size_t i = 0; i < values_.size(); ++i) {
         const ImplicitFunction::Step& step = function.steps()[i];
         if (step.kind != Kind::number && step.kind != Kind::pi) continue;
-        const bool read =
-            step.kind == Kind::pi ? mpfi_const_pi(exact_) >= 0 : mpfi_set_str(exact_, step.text.c_str(), 10) == 0;
+        if (step.kind == Kind::pi)
+            mpfi_const_pi(exact_);
+        else
+            CERTA_ASSERT(mpfi_set_str(exact_, step.text.c_str(), 10) == 0);
         values_[i].value = {mpfr_get_d(&exact_->left, MPFR_RNDD), mpfr_get_d(&exact_->right, MPFR_RNDU)};
-        values_[i].defined = values_[i].smooth = values_[i].curved = read && is_usable(values_[i].value);
+        values_[i].defined = values_[i].smooth = true;
     }
 }
 
@@ -87,7 +58,7 @@ void QuickEnclosures::evaluate(const std::array<Span, 3>& place, int order) {
             case Kind::variable:
                 r.value = place[static_cast<std::size_t>(step.n)];
                 r.slope[static_cast<std::size_t>(step.n)] = {1, 1};
-                r.defined = r.smooth = r.curved = true;
+                r.defined = r.smooth = true;
                 continue;
             case Kind::sum:
             case Kind::difference:
@@ -100,8 +71,6 @@ void QuickEnclosures::evaluate(const std::array<Span, 3>& place, int order) {
                 unary(step, values_[step.a], r, order);
         }
         r.defined = r.defined && is_usable(r.value);
-        r.smooth = r.smooth && r.defined;
-        r.curved = r.curved && r.smooth;
     }
 }
 
@@ -114,7 +83,6 @@ bool QuickEnclosures::outer(const ImplicitFunction::Step& step, const Span& a, O
             return true;
         case Kind::power: {
             if (std::labs(step.n) > 1'000'000) return false;  // left to MPFI
-            if (step.n < 0 && sign_of(a) == 0) return false;
             const auto n = static_cast<double>(step.n);
             const auto to = [&](long k) { return k == 0 ? one : k < 0 ? one / raised(a, -k) : raised(a, k); };
             f.value = to(step.n);
@@ -122,19 +90,15 @@ bool QuickEnclosures::outer(const ImplicitFunction::Step& step, const Span& a, O
             f.bend = step.n == 0 || step.n == 1 ? Span{0, 0} : Span{n * (n - 1), n * (n - 1)} * to(step.n - 2);
             return true;
         }
-        case Kind::root: {
-            if (!(a.low >= 0)) return false;
-            const Span wide = widened(std::sqrt(a.low), std::sqrt(a.high));
-            f.value = {std::max(wide.low, 0.0), wide.high};
+        case Kind::root:
+            f.value = root(a);
             f.slope = Span{0.5, 0.5} / f.value;
             f.bend = -(f.slope / (two * a));
             return true;
-        }
         case Kind::exponential:
             f.value = f.slope = f.bend = by_mpfi(mpfi_exp, a);
             return true;
         case Kind::logarithm:
-            if (sign_of(a) <= 0) return false;
             f = {by_mpfi(mpfi_log, a), one / a, -(one / square(a))};
             return true;
         case Kind::sine:
@@ -148,7 +112,6 @@ bool QuickEnclosures::outer(const ImplicitFunction::Step& step, const Span& a, O
             f.bend = -f.value;
             return true;
         case Kind::tangent:
-            if (sign_of(by_mpfi(mpfi_cos, a)) == 0) return false;
             f.value = by_mpfi(mpfi_tan, a);
             f.slope = one + square(f.value);
             f.bend = two * f.value * f.slope;
@@ -180,7 +143,6 @@ void QuickEnclosures::unary(const ImplicitFunction::Step& step, const Values& a,
     if (!r.defined) return;
     r.value = f.value;
     r.smooth = a.smooth && is_usable(f.slope);
-    r.curved = r.smooth && a.curved && is_usable(f.bend);
     chain(step, a, f, r, order);
 }
 
@@ -190,7 +152,7 @@ void QuickEnclosures::chain(const ImplicitFunction::Step& step, const Values& a,
     for (std::size_t i = 0; i < 3; ++i) {
         if ((step.depends >> i) & 1u) r.slope[i] = f.slope * a.slope[i];
     }
-    if (order < 2 || !r.curved) return;
+    if (order < 2) return;
     for (std::size_t k = 0; k < 6; ++k) {
         const auto [i, j] = pair_of[k];
         if (((step.depends >> i) & (step.depends >> j) & 1u) == 0) continue;
@@ -203,10 +165,7 @@ void QuickEnclosures::binary(const ImplicitFunction::Step& step, const Values& a
     r.defined = a.defined && b.defined;
     if (!r.defined) return;
     r.smooth = a.smooth && b.smooth;
-    r.curved = a.curved && b.curved;
     if (step.kind == Kind::real_power) {  // exp(b log a); roots are left to MPFI where a may be 0
-        r.defined = sign_of(a.value) > 0;
-        if (!r.defined) return;
         Outer f;
         f.value = by_mpfi(mpfi_exp, by_mpfi(mpfi_log, a.value) * b.value);
         f.slope = b.value * (f.value / a.value);
@@ -215,8 +174,6 @@ void QuickEnclosures::binary(const ImplicitFunction::Step& step, const Values& a
         return chain(step, a, f, r, order);
     }
     const bool quotient = step.kind == Kind::quotient;
-    r.defined = !quotient || sign_of(b.value) != 0;
-    if (!r.defined) return;
     const auto linear = [&](const Span& of_a, const Span& of_b) {
         return step.kind == Kind::sum ? of_a + of_b : of_a - of_b;
     };
@@ -228,7 +185,7 @@ void QuickEnclosures::binary(const ImplicitFunction::Step& step, const Values& a
                      : quotient ? (a.slope[i] - r.value * b.slope[i]) / b.value
                                 : a.slope[i] * b.value + a.value * b.slope[i];
     }
-    for (std::size_t k = 0; order >= 2 && r.curved && k < 6; ++k) {
+    for (std::size_t k = 0; order >= 2 && r.smooth && k < 6; ++k) {
         const auto [i, j] = pair_of[k];
         if (((step.depends >> i) & (step.depends >> j) & 1u) == 0) continue;
         r.bend[k] =
@@ -248,7 +205,7 @@ bool QuickEnclosures::directly(const BoxOfDoubles& box, int axis, int sign) {
     std::array<double, 3> center;
     for (std::size_t i = 0; i < 3; ++i) {
         place[i] = {box.low[i], box.high[i]};
-        center[i] = box.low[i] / 2 + box.high[i] / 2;
+        center[i] = middle_of(box.low[i], box.high[i]);
     }
     evaluate(place, 1);
     const Values& whole = values_[function_.result()];
@@ -265,7 +222,6 @@ bool QuickEnclosures::directly(const BoxOfDoubles& box, int axis, int sign) {
     for (std::size_t i = 0; i < 3; ++i) sum = sum + whole.slope[i] * (place[i] - Span{center[i], center[i]});
     evaluate({Span{center[0], center[0]}, Span{center[1], center[1]}, Span{center[2], center[2]}}, 0);
     const Values& middle = values_[function_.result()];
-    if (!middle.defined) return false;
     return sign_of(sum + middle.value) == sign || by_second_order(place, center, axis, sign);
 }
 
@@ -274,7 +230,6 @@ bool QuickEnclosures::by_second_order(std::array<Span, 3> place, const std::arra
                                       int sign) {
     evaluate(place, 2);
     const Values& whole = values_[function_.result()];
-    if (!whole.curved) return false;
     std::array<Span, 3> d;
     for (std::size_t i = 0; i < 3; ++i) {
         d[i] = place[i] - Span{center[i], center[i]};
@@ -292,7 +247,6 @@ bool QuickEnclosures::by_second_order(std::array<Span, 3> place, const std::arra
     }
     evaluate(place, 1);
     const Values& middle = values_[function_.result()];
-    if (!middle.defined || !middle.smooth) return false;
     if (axis >= 0) return sign_of(sum + middle.slope[static_cast<std::size_t>(axis)]) == sign;
     for (std::size_t i = 0; i < 3; ++i) sum = sum + middle.slope[i] * d[i];
     return sign_of(sum + middle.value) == sign;

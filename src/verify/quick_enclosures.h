@@ -6,13 +6,9 @@
 #include <vector>
 
 #include "verify/implicit_function.h"
+#include "verify/span.h"
 
 namespace certa::verify {
-
-/// A closed interval of doubles. Results of operations are computed to nearest and widened by more than their rounding.
-struct Span {
-    double low = 0, high = 0;
-};
 
 /// One thread's enclosures of one function, with the interface of Enclosures as far as it is needed. Shares nothing
 /// with src/interval and src/expression; functions other than roots are MPFI's, rounded outward.
@@ -34,8 +30,8 @@ private:
     struct Values {
         Span value;
         std::array<Span, 3> slope{};
-        std::array<Span, 6> bend{};                            ///< second derivatives xx, xy, xz, yy, yz, zz
-        bool defined = false, smooth = false, curved = false;  ///< curved: twice differentiable
+        std::array<Span, 6> bend{};            ///< second derivatives xx, xy, xz, yy, yz, zz
+        bool defined = false, smooth = false;  ///< smooth, where defined: differentiable, as often as one likes
     };
     /// A function of one number: value and two derivatives.
     struct Outer {

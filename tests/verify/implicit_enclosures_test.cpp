@@ -1,10 +1,13 @@
 // What the checker's enclosures in doubles rest on, one test per protection; each fails when its protection is taken
 // away (tried by hand).
-//   results moved outward            RoundingNeverDecides
+//   each operation moved outward     RoundingNeverDecides; where numbers are tiny: UnderflowNeverDecides
 //   MPFI's bounds rounded outward    FunctionsNeverDecide, ConstantsAreTheExactDecimals
-//   poles                            NothingIsProvedAcrossPoles (domains of functions: MPFI refuses them, too)
+//   squares, powers: the lowest is 0 SlopesNeedADifferentiableFunction
+//   poles, ends of domains           NothingIsProvedAcrossPoles; undefined steps that what follows does not use, too
 //   a slope needs all derivatives    SlopesNeedADifferentiableFunction
-//   infinities prove nothing         OverflowProvesNothing (guarded at each operation and at each step)
+//   the mean value form needs slopes TheMeanValueFormNeedsSlopes
+//   its centre lies in the box       TheMiddleLiesInTheBox (of the two enclosures, MPFI's is the one that can tell)
+//   overflow proves nothing          Span.WithoutUseStaySo, OverflowProvesNothing, InfiniteSlopesProveNothing
 //   rounding to nearest              OtherRoundingModesProveNothing
 //
 // How the first two work: z is the double that an operation op(x, y) rounds to, w is smaller than the error of that
@@ -119,8 +122,9 @@ TEST(QuickEnclosures, ConstantsAreTheExactDecimals) {
 // Boxes that hold a pole or leave the domain: the corners alone would say a sign.
 TEST(QuickEnclosures, NothingIsProvedAcrossPoles) {
     const BoxOfDoubles box{{-1, -1, -1}, {1, 1.5, 1.25}};
-    for (const char* text : {"1/x + 5", "x^-1 + 5", "x^-3 + 5", "tan(2*x) + 9", "5 + log(x)", "5 + sqrt(x)",
-                             "5 + x^0.3", "5 + 0/x", "5 + 0*log(y)", "5 + (1/z)^0", "3 + x/x"}) {
+    for (const char* text : {"1/x + 5", "x^-1 + 5", "x^-3 + 5", "tan(2*x) + 9", "tan(x + 1.5) + 9", "5 + log(x)",
+                             "5 + sqrt(x)", "5 + z^0.5", "5 + log(y + 1)^0 + log(z)^0", "5 + sqrt(x)^0", "5 + x^-2",
+                             "5 + x^0.3 - x^0.3", "5 + x^0.3", "5 + 0/x", "5 + 0*log(y)", "5 + (1/z)^0", "3 + x/x"}) {
         const ImplicitFunction function(text);
         QuickEnclosures quick(function);
         Enclosures careful(function);
@@ -137,7 +141,8 @@ TEST(QuickEnclosures, NothingIsProvedAcrossPoles) {
 
 // The derivative by y is 1 everywhere, but the function is not C1 where x is 0.
 TEST(QuickEnclosures, SlopesNeedADifferentiableFunction) {
-    for (const char* text : {"sqrt(x^2) + y", "sqrt(x + 1) + y", "(x^2 + z^2)^0.5 + y", "0*sqrt(x^2) + y"}) {
+    for (const char* text : {"sqrt(x^2) + y", "sqrt(x + 1) + y", "(x^2 + z^2)^0.5 + y", "0*sqrt(x^2) + y",
+                             "exp(sqrt(x^2)) + y", "sin(sqrt(x^2) + 1) + 3*y", "sqrt(x^4) + y"}) {
         const ImplicitFunction function(text);
         QuickEnclosures quick(function);
         Enclosures careful(function);
@@ -146,6 +151,73 @@ TEST(QuickEnclosures, SlopesNeedADifferentiableFunction) {
         EXPECT_FALSE(careful.proves_slope(across, 1, 1)) << text;
         EXPECT_TRUE(quick.proves(beside, 1, 1)) << text;
         EXPECT_TRUE(careful.proves_slope(beside, 1, 1)) << text;
+    }
+}
+
+// At 0 it is -0.5, and slopes there are none.
+TEST(QuickEnclosures, TheMeanValueFormNeedsSlopes) {
+    const BoxOfDoubles box{{-1, -1, -1}, {1, 1, 1}};
+    for (const char* text : {"sqrt(x^2) - 0.5", "sqrt(y^2) - 0.5 + x/100"}) {
+        const ImplicitFunction function(text);
+        QuickEnclosures quick(function);
+        Enclosures careful(function);
+        EXPECT_FALSE(quick.proves_directly(box, value, -1)) << text;
+        EXPECT_FALSE(careful.proves_sign(box, -1)) << text;
+    }
+}
+
+// m / 2 + m / 2 is 0 in doubles. From there, with the slope at m, f(m) would seem to be u^2 / 2 > 0, u being 1e300 m.
+TEST(QuickEnclosures, TheMiddleLiesInTheBox) {
+    const double m = 0x1p-1074;
+    EXPECT_EQ(middle_of(m, m), m);
+    EXPECT_EQ(middle_of(-m, -m), -m);
+    EXPECT_EQ(middle_of(-0x1.fffffffffffffp1023, 0x1.fffffffffffffp1023), 0);
+    const ImplicitFunction function("(1e300*x)^2 - 3.6615e-47");
+    QuickEnclosures quick(function);
+    Enclosures careful(function);
+    EXPECT_FALSE(quick.proves_directly(point(m, 0, 0), value, 1));
+    EXPECT_FALSE(careful.proves_sign(point(m, 0, 0), 1));
+    EXPECT_TRUE(careful.proves_sign(point(m, 0, 0), -1));
+}
+
+// x y is 1.4 smallest numbers, 1 in doubles; exactly then 5 - 4 > 0, in truth 5 - 5.6 < 0.
+TEST(QuickEnclosures, UnderflowNeverDecides) {
+    const double smallest = 0x1p-1074;
+    for (const char* text : {"5*z - 4*(x*y)", "5*z - 4*(x/(1/y))"}) {
+        const ImplicitFunction function(text);
+        QuickEnclosures quick(function);
+        Enclosures careful(function);
+        const BoxOfDoubles place = point(1.4 * 0x1p-537, 0x1p-537, smallest);
+        EXPECT_FALSE(quick.proves_directly(place, value, 1)) << text;
+        EXPECT_TRUE(careful.proves_sign(place, -1)) << text;
+    }
+}
+
+TEST(Span, WithoutUseStaySo) {
+    const double inf = HUGE_VAL;
+    for (const Span& a :
+         {Span{1, inf}, Span{-inf, -1}, Span{-inf, inf}, Span{inf, inf}, Span{NAN, NAN}, Span{1, NAN}, Span{NAN, -1}}) {
+        EXPECT_FALSE(is_usable(a)) << a.low << " " << a.high;
+        EXPECT_EQ(sign_of(a), 0) << a.low << " " << a.high;
+        for (const Span& b : {Span{0, 1}, Span{-1, 0}, Span{0, 0}, Span{2, 3}, Span{-3, -2}, Span{-1, 1}}) {
+            for (const Span& c : {a + b, b + a, a - b, b - a, a * b, b * a, a / b, b / a})
+                EXPECT_FALSE(is_usable(c)) << a.low << " " << a.high << " with " << b.low << " " << b.high;
+        }
+        for (const Span& c : {-a, square(a), raised(a, 3), raised(a, 4), root(a)})
+            EXPECT_FALSE(is_usable(c)) << a.low << " " << a.high;
+    }
+    for (const Span& b : {Span{0, 0}, Span{-1, 1}, Span{0, 1}, Span{-1, 0}}) EXPECT_FALSE(is_usable(Span{1, 1} / b));
+    EXPECT_FALSE(is_usable(root({-1e-300, 4})));
+    EXPECT_TRUE(is_usable(root({0, 4})));
+}
+
+// The slope by x of the product is somewhere infinite, times y, which may be 0: in doubles that is no number, and the
+// rest would be what remains.
+TEST(QuickEnclosures, InfiniteSlopesProveNothing) {
+    const ImplicitFunction function("(1e150*(1e250*x^2))*y - 5*x"), turned("y*(1e150*(1e250*x^2)) - 5*x");
+    for (const ImplicitFunction* f : {&function, &turned}) {
+        QuickEnclosures quick(*f);
+        EXPECT_FALSE(quick.proves_directly({{0, 0, 0}, {1e-50, 1, 1}}, 0, -1));
     }
 }
 
