@@ -5,16 +5,20 @@
 #include <array>
 #include <map>
 
+#include "implicit/field.h"
+
 namespace certa::test {
 namespace {
 
 class Marcher {
 public:
-    Marcher(const Expression& f, const Point3& low, const Point3& high, int n) : f_(f), low_(low), high_(high), n_(n) {
+    Marcher(const Expression& f, const Point3& low, const Point3& high, int n) : low_(low), high_(high), n_(n) {
+        const expression::Tape tape(f);
+        implicit::Field field(tape);
         values_.resize(static_cast<std::size_t>(n + 1) * (n + 1) * (n + 1));
         for (int k = 0; k <= n; ++k) {
             for (int j = 0; j <= n; ++j) {
-                for (int i = 0; i <= n; ++i) values_[number(i, j, k)] = evaluate(f_, place(i, j, k)).value;
+                for (int i = 0; i <= n; ++i) values_[number(i, j, k)] = field.value(place(i, j, k));
             }
         }
     }
@@ -82,7 +86,6 @@ private:
         }
     }
 
-    const Expression& f_;
     Point3 low_, high_;
     int n_;
     std::vector<double> values_;

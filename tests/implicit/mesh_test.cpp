@@ -3,8 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <optional>
 
+#include "core/parallel.h"
 #include "core/random.h"
 #include "implicit/marching_cubes.h"
 #include "implicit/topology.h"
@@ -370,13 +374,18 @@ TEST(Engines, RefuseWhatTheyCannotDo) {
     EXPECT_FALSE(plane.obstacles.empty());
 }
 
-/// Components and genera as dense sampling sees them, where two resolutions agree.
-std::vector<int> sampled_genera(const Expression& f, const Point3& low, const Point3& high) {
-    const std::vector<int> coarse = test::measure(test::march_cubes(f, low, high, 25)).genera;
-    return test::measure(test::march_cubes(f, low, high, 40)).genera == coarse ? coarse : std::vector<int>{-1};
+/// Components and genera as dense sampling sees them; nothing where two resolutions disagree.
+std::optional<std::vector<int>> sampled_genera(const Expression& f, const Point3& low, const Point3& high, int n) {
+    std::vector<int> coarse = test::measure(test::march_cubes(f, low, high, 5 * n / 8)).genera;
+    if (test::measure(test::march_cubes(f, low, high, n)).genera != coarse) return std::nullopt;
+    return coarse;
 }
 
-void compare_with_sampling(std::uint64_t seed, int& decided) {
+enum class Comparison { undecided, agrees, agrees_when_finer, agrees_with_other_engine };
+
+/// Sums of bumps, some with a wave. Where sampling disagrees it may have missed what is small: it is made finer, and if
+/// that does not help the other engine, which shares no theorem with the first one, has the last word.
+Comparison compare_with_sampling(std::uint64_t seed) {
     core::Random random(seed);
     Expression f = 0.35;
     const Expression x = Expression::x(), y = Expression::y(), z = Expression::z();
@@ -388,32 +397,42 @@ void compare_with_sampling(std::uint64_t seed, int& decided) {
     if (random.coin(0.5))
         f = f + 0.1 * sin(3.0 * x + random.uniform(0, 3)) * sin(3.0 * y) * exp(-1.0 * (z * z + x * x + y * y));
     const Point3 low{-2.21, -2.13, -2.17}, high{2.11, 2.23, 2.19};
-    const ImplicitResult result = mesh_implicit(f, low, high, {.max_cells = 60'000});
-    if (result.verdict == ImplicitVerdict::undecided) return;
+    RunControl alone;
+    alone.threads = 1;
+    const ImplicitResult result = mesh_implicit(f, low, high, {.max_cells = 60'000}, alone);
+    if (result.verdict == ImplicitVerdict::undecided) return Comparison::undecided;
     std::vector<int> genera;
     for (const ImplicitComponent& component : result.components) genera.push_back(component.genus);
     std::sort(genera.begin(), genera.end());
-    const std::vector<int> sampled = sampled_genera(f, low, high);
-    if (sampled == std::vector<int>{-1}) return;
-    ++decided;
-    if (sampled == genera) return;
-    // Sampling may miss what is small: the other engine has the last word.
+    for (const int n : {40, 104}) {
+        const auto sampled = sampled_genera(f, low, high, n);
+        if (sampled == genera) return n == 40 ? Comparison::agrees : Comparison::agrees_when_finer;
+    }
     const ImplicitResult other =
-        mesh_implicit(f, low, high, {.max_cells = 3'000'000, .engine = ImplicitEngine::plantinga_vegter});
-    ASSERT_NE(other.verdict, ImplicitVerdict::undecided) << "unresolved: seed " << seed;
+        mesh_implicit(f, low, high, {.max_cells = 1'000'000, .engine = ImplicitEngine::plantinga_vegter}, alone);
+    EXPECT_NE(other.verdict, ImplicitVerdict::undecided) << "unresolved: seed " << seed;
     EXPECT_EQ(test::measure(other.mesh).genera, genera) << "seed " << seed << "\n" << format_expression(f);
+    return Comparison::agrees_with_other_engine;
 }
 
-TEST(Sampling, AgreesWithWhatIsCertified) {
-    int decided = 0;
-    for (std::uint64_t seed = 1; seed <= 2; ++seed) compare_with_sampling(seed, decided);
-    EXPECT_GT(decided, 0);
+/// How many of each kind, the cases being independent: one thread each.
+std::array<int, 4> compare_with_sampling(std::uint64_t first, std::uint64_t end) {
+    std::vector<Comparison> found(end - first);
+    core::parallel_for(found.size(), 1, {}, [&](std::size_t begin, std::size_t last) {
+        for (std::size_t i = begin; i < last; ++i) found[i] = compare_with_sampling(first + i);
+    });
+    std::array<int, 4> count{};
+    for (const Comparison c : found) ++count[static_cast<std::size_t>(c)];
+    return count;
 }
+
+TEST(Sampling, AgreesWithWhatIsCertified) { EXPECT_GT(compare_with_sampling(1, 3)[1], 0); }
 
 TEST(SamplingLong, AgreesWithWhatIsCertified) {
-    int decided = 0;
-    for (std::uint64_t seed = 1000; seed < 1300; ++seed) compare_with_sampling(seed, decided);
-    EXPECT_GT(decided, 150);
+    const std::array<int, 4> count = compare_with_sampling(1000, 2000);
+    std::printf("undecided %d, agrees %d, when finer %d, with the other engine %d\n", count[0], count[1], count[2],
+                count[3]);
+    EXPECT_GT(count[1] + count[2] + count[3], 900);
 }
 
 }  // namespace
