@@ -1,7 +1,8 @@
-// Nearest points by a tree of boxes, split at the median of the centroids along the longest side.
+// Nearest points by a tree of boxes, four to a node, split at the medians of the centroids along the longest sides.
 //
 // The point of a triangle nearest to p (regions of Ericson 2004, 5.1.5) is returned with its weights; quotients that
-// rounding or a triangle without area would make meaningless fall back to the sides. Descent is nearer child first.
+// rounding or a triangle without area would make meaningless fall back to the sides. The four boxes of a node are
+// judged at once, in single precision: they are larger by more than its rounding, so that nothing is missed.
 #include "core/triangle_tree.h"
 
 #include <algorithm>
@@ -11,7 +12,11 @@
 namespace certa::core {
 namespace {
 
-constexpr std::uint32_t leaf_size = 4;
+/// Boxes in [-1, 1] grow by this; rounding points of [-4, 4] to floats moves them by less.
+constexpr double margin = 1e-6;
+using Lanes = float __attribute__((vector_size(16)));
+
+Lanes load(const std::array<float, 4>& values) { return Lanes{values[0], values[1], values[2], values[3]}; }
 
 /// The parameter of the point of ab nearest to p.
 double clamp_quotient(double numerator, double denominator) {
@@ -38,13 +43,6 @@ NearestPoint nearest_on_sides(const Point3& p, const Point3& a, const Point3& b,
     return *std::min_element(candidates, candidates + 3, [](const NearestPoint& l, const NearestPoint& r) {
         return l.squared_distance < r.squared_distance;
     });
-}
-
-double squared_distance_to_box(const Point3& p, const Point3& low, const Point3& high) {
-    const double x = std::max({low.x - p.x, 0.0, p.x - high.x});
-    const double y = std::max({low.y - p.y, 0.0, p.y - high.y});
-    const double z = std::max({low.z - p.z, 0.0, p.z - high.z});
-    return x * x + y * y + z * z;
 }
 
 Point3 lowest(const Point3& p, const Point3& q) { return {std::min(p.x, q.x), std::min(p.y, q.y), std::min(p.z, q.z)}; }
@@ -88,82 +86,145 @@ NearestPoint find_nearest_on_triangle(const Point3& p, const Point3& a, const Po
     return on_weights(p, a, b, c, {std::max(0.0, 1.0 - v - w), v, w});
 }
 
+/// A triangle while the tree is built.
+struct TriangleTree::Place {
+    std::array<float, 3> middle{};
+    std::uint32_t id = 0;
+    Box box;
+};
+
 TriangleTree::TriangleTree(std::span<const Point3> positions, std::span<const Triangle> triangles) {
-    triangles_.resize(triangles.size());
-    for (std::uint32_t i = 0; i < triangles.size(); ++i) {
-        triangles_[i] = {positions[index_of(triangles[i][0])], positions[index_of(triangles[i][1])],
-                         positions[index_of(triangles[i][2])], i};
+    if (triangles.empty()) return;
+    std::vector<Place> places(triangles.size());
+    const auto corner = [&](std::uint32_t t, std::size_t i) -> const Point3& {
+        return positions[index_of(triangles[t][i])];
+    };
+    Box all{corner(0, 0), corner(0, 0)};
+    for (std::uint32_t t = 0; t < triangles.size(); ++t) {
+        const Point3 &a = corner(t, 0), &b = corner(t, 1), &c = corner(t, 2);
+        places[t].id = t;
+        places[t].box = {lowest(a, lowest(b, c)), highest(a, highest(b, c))};
+        all = {lowest(all.low, places[t].box.low), highest(all.high, places[t].box.high)};
     }
-    nodes_.reserve(triangles.size() + 1);
-    if (!triangles_.empty()) build(0, static_cast<std::uint32_t>(triangles_.size()));
+    middle_ = 0.5 * all.low + 0.5 * all.high;
+    const Point3 size = all.high - all.low;
+    const double half = 0.5 * std::max({size.x, size.y, size.z});
+    if (half > 1e-150) scale_ = 1.0 / half;
+    for (Place& place : places)
+        place.middle = reduced((1.0 / 3.0) * (corner(place.id, 0) + corner(place.id, 1) + corner(place.id, 2)));
+    nodes_.reserve(triangles.size() / 2 + 1);
+    nodes_.emplace_back();
+    build(places, 0, 0);
+    triangles_.resize(triangles.size());
     place_of_.resize(triangles.size());
-    for (std::uint32_t i = 0; i < triangles_.size(); ++i) place_of_[triangles_[i].id] = i;
+    for (std::uint32_t i = 0; i < places.size(); ++i) {
+        const std::uint32_t t = places[i].id;
+        triangles_[i] = {corner(t, 0), corner(t, 1), corner(t, 2), t};
+        place_of_[t] = i;
+    }
 }
 
-std::uint32_t TriangleTree::build(std::uint32_t begin, std::uint32_t end) {
-    const auto id = static_cast<std::uint32_t>(nodes_.size());
-    nodes_.emplace_back();
-    Node node;
-    node.begin = begin, node.end = end;
-    node.low = node.high = triangles_[begin].a;
-    const auto middle_of = [](const Entry& e) { return e.a + e.b + e.c; };  // three times the centroid
-    Point3 low = middle_of(triangles_[begin]), high = low;
-    for (std::uint32_t i = begin; i < end; ++i) {
-        const Entry& e = triangles_[i];
-        node.low = lowest(node.low, lowest(e.a, lowest(e.b, e.c)));
-        node.high = highest(node.high, highest(e.a, highest(e.b, e.c)));
-        low = lowest(low, middle_of(e)), high = highest(high, middle_of(e));
+/// Splits in two halves of equal count, these again, and makes a lane of each.
+TriangleTree::Box TriangleTree::build(std::span<Place> places, std::uint32_t begin, std::uint32_t node) {
+    const auto halve = [](std::span<Place> part) {
+        std::array<float, 3> low = part[0].middle, high = low;
+        for (const Place& place : part)
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                low[axis] = std::min(low[axis], place.middle[axis]);
+                high[axis] = std::max(high[axis], place.middle[axis]);
+            }
+        std::size_t longest = 0;
+        for (std::size_t axis = 1; axis < 3; ++axis)
+            if (high[axis] - low[axis] > high[longest] - low[longest]) longest = axis;
+        const auto half = static_cast<std::ptrdiff_t>(part.size() / 2);
+        std::nth_element(part.begin(), part.begin() + half, part.end(), [&](const Place& l, const Place& r) {
+            return l.middle[longest] != r.middle[longest] ? l.middle[longest] < r.middle[longest] : l.id < r.id;
+        });
+        return part.size() / 2;
+    };
+    std::array<std::size_t, 5> ends{0, 0, 0, 0, places.size()};
+    if (places.size() <= 4) {
+        for (std::size_t lane = 1; lane < 4; ++lane) ends[lane] = std::min(lane, places.size());
+    } else {
+        ends[2] = halve(places);
+        ends[1] = halve(places.first(ends[2]));
+        ends[3] = ends[2] + halve(places.subspan(ends[2]));
     }
-    if (end - begin > leaf_size) {
-        const Point3 size = high - low;
-        double Point3::*axis = &Point3::x;
-        if (size.y > size.x) axis = &Point3::y;
-        if (size.z > size.*axis) axis = &Point3::z;
-        const std::uint32_t middle = begin + (end - begin) / 2;
-        std::nth_element(triangles_.begin() + begin, triangles_.begin() + middle, triangles_.begin() + end,
-                         [&](const Entry& l, const Entry& r) {
-                             const double lm = middle_of(l).*axis, rm = middle_of(r).*axis;
-                             return lm != rm ? lm < rm : l.id < r.id;
-                         });
-        build(begin, middle);
-        node.second = build(middle, end);
+    Box whole{places[0].box.low, places[0].box.high};
+    for (std::size_t lane = 0; lane < 4; ++lane) {
+        const std::span<Place> part = places.subspan(ends[lane], ends[lane + 1] - ends[lane]);
+        const auto first = begin + static_cast<std::uint32_t>(ends[lane]);
+        std::uint32_t child = no_index;
+        Box box{{1.0, 1.0, 1.0}, {-1.0, -1.0, -1.0}};
+        if (part.size() == 1) {
+            box = part[0].box;
+            child = first | leaf;
+        } else if (part.size() > 1) {
+            child = static_cast<std::uint32_t>(nodes_.size());
+            nodes_.emplace_back();
+            box = build(part, first, child);
+        }
+        Node& out = nodes_[node];
+        out.child[lane] = child;
+        const std::array<double, 3> low{(box.low.x - middle_.x) * scale_, (box.low.y - middle_.y) * scale_,
+                                        (box.low.z - middle_.z) * scale_},
+            high{(box.high.x - middle_.x) * scale_, (box.high.y - middle_.y) * scale_,
+                 (box.high.z - middle_.z) * scale_};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            out.low[axis][lane] = child == no_index ? 1e30F : static_cast<float>(low[axis] - margin);
+            out.high[axis][lane] = child == no_index ? 1e30F : static_cast<float>(high[axis] + margin);
+        }
+        if (child != no_index) whole = {lowest(whole.low, box.low), highest(whole.high, box.high)};
     }
-    nodes_[id] = node;
-    return id;
+    return whole;
 }
 
 NearestPoint TriangleTree::find_nearest(const Point3& p, std::uint32_t hint, double limit) const {
     NearestPoint best;
-    if (nodes_.empty()) return best;
+    if (triangles_.empty()) return best;
     best.squared_distance = limit * limit;
+    // In the boxes' unit, with room for the rounding of squares.
+    const double unit = scale_ * scale_ * (1.0 + 1e-6);
+    double enough = best.squared_distance * unit;
     const auto offer = [&](const Entry& e) {
         NearestPoint found = find_nearest_on_triangle(p, e.a, e.b, e.c);
         if (!(found.squared_distance < best.squared_distance)) return;
         best = found;
         best.triangle = e.id;
+        enough = best.squared_distance * unit;
     };
     if (hint != no_index) offer(triangles_[place_of_[hint]]);
+    const std::array<float, 3> at = reduced(p);
     struct Waiting {
         std::uint32_t node = 0;
-        double squared_distance = 0.0;
+        float squared_distance = 0.0F;
     };
-    std::array<Waiting, 96> stack;
+    std::array<Waiting, most_waiting> stack;
     std::size_t top = 0;
-    stack[top++] = {0, squared_distance_to_box(p, nodes_[0].low, nodes_[0].high)};
+    stack[top++] = {0, 0.0F};
     while (top > 0) {
         const Waiting waiting = stack[--top];
-        if (!(waiting.squared_distance < best.squared_distance)) continue;
+        if (!(static_cast<double>(waiting.squared_distance) < enough)) continue;
         const Node& node = nodes_[waiting.node];
-        if (node.second == 0) {
-            for (std::uint32_t i = node.begin; i < node.end; ++i) offer(triangles_[i]);
-            continue;
+        Lanes sum{};
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Lanes below = load(node.low[axis]) - at[axis], above = at[axis] - load(node.high[axis]);
+            const Lanes outside = below > above ? below : above, zero{};
+            const Lanes away = outside > zero ? outside : zero;
+            sum += away * away;
         }
-        Waiting first{waiting.node + 1, 0.0}, second{node.second, 0.0};
-        first.squared_distance = squared_distance_to_box(p, nodes_[first.node].low, nodes_[first.node].high);
-        second.squared_distance = squared_distance_to_box(p, nodes_[second.node].low, nodes_[second.node].high);
-        if (second.squared_distance < first.squared_distance) std::swap(first, second);
-        stack[top++] = second;
-        stack[top++] = first;
+        // Nearest first: triangles at once, nodes later.
+        std::array<std::uint32_t, 4> order{0, 1, 2, 3};
+        for (std::size_t i = 1; i < 4; ++i)
+            for (std::size_t k = i; k > 0 && sum[order[k]] < sum[order[k - 1]]; --k) std::swap(order[k], order[k - 1]);
+        for (const std::uint32_t lane : order)
+            if ((node.child[lane] & leaf) != 0 && static_cast<double>(sum[lane]) < enough)
+                offer(triangles_[node.child[lane] & ~leaf]);
+        for (std::size_t i = 4; i-- > 0;) {
+            const std::uint32_t lane = order[i];
+            if ((node.child[lane] & leaf) == 0 && static_cast<double>(sum[lane]) < enough)
+                stack[top++] = {node.child[lane], sum[lane]};
+        }
     }
     return best;
 }

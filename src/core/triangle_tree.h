@@ -3,6 +3,7 @@
 // in a box. Coordinates should be of the order of 1 (scale by a power of two first), or squares overflow.
 #include <certa/mesh.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <limits>
@@ -35,21 +36,22 @@ public:
     /// Calls visit(triangle) for every triangle whose box meets [low, high] (and maybe a few more).
     template <class Visit>
     void visit_box(const Point3& low, const Point3& high, const Visit& visit) const {
-        if (nodes_.empty()) return;
-        std::array<std::uint32_t, 96> stack;
+        if (triangles_.empty()) return;
+        const std::array<float, 3> from = reduced(low), to = reduced(high);
+        std::array<std::uint32_t, most_waiting> stack;
         std::size_t top = 0;
         stack[top++] = 0;
         while (top > 0) {
-            const std::uint32_t index = stack[--top];
-            const Node& node = nodes_[index];
-            if (node.low.x > high.x || node.low.y > high.y || node.low.z > high.z || node.high.x < low.x ||
-                node.high.y < low.y || node.high.z < low.z)
-                continue;
-            if (node.second == 0) {
-                for (std::uint32_t i = node.begin; i < node.end; ++i) visit(triangles_[i].id);
-            } else {
-                stack[top++] = node.second;
-                stack[top++] = index + 1;
+            const Node& node = nodes_[stack[--top]];
+            for (std::size_t lane = 4; lane-- > 0;) {
+                bool meets = node.child[lane] != no_index;
+                for (std::size_t axis = 0; axis < 3; ++axis)
+                    meets = meets && node.low[axis][lane] <= to[axis] && node.high[axis][lane] >= from[axis];
+                if (!meets) continue;
+                if ((node.child[lane] & leaf) != 0)
+                    visit(triangles_[node.child[lane] & ~leaf].id);
+                else
+                    stack[top++] = node.child[lane];
             }
         }
     }
@@ -59,16 +61,33 @@ private:
         Point3 a, b, c;
         std::uint32_t id = 0;
     };
-    struct Node {
-        Point3 low, high;
-        std::uint32_t begin = 0, end = 0;
-        std::uint32_t second = 0;  // the second child, the first one follows; 0: leaf
+    /// Four boxes side by side, in single precision and a little too large.
+    struct alignas(16) Node {
+        std::array<std::array<float, 4>, 3> low, high;
+        std::array<std::uint32_t, 4> child;  ///< a node; an entry, with `leaf`; no_index: none
     };
-    std::uint32_t build(std::uint32_t begin, std::uint32_t end);
+    struct Box {
+        Point3 low, high;
+    };
+    struct Place;
+    static constexpr std::uint32_t leaf = 1U << 31;
+    static constexpr std::size_t most_waiting = 128;
+
+    Box build(std::span<Place> places, std::uint32_t begin, std::uint32_t node);
+    Box box_of(std::span<const Place> places, std::uint32_t entry) const;
+    /// In the unit of the boxes: the mesh lies in [-1, 1]. Points far outside are pulled in, towards all boxes.
+    std::array<float, 3> reduced(const Point3& p) const {
+        const auto reduce = [&](double x, double middle) {
+            return static_cast<float>(std::clamp((x - middle) * scale_, -4.0, 4.0));
+        };
+        return {reduce(p.x, middle_.x), reduce(p.y, middle_.y), reduce(p.z, middle_.z)};
+    }
 
     std::vector<Entry> triangles_;
     std::vector<std::uint32_t> place_of_;  // triangle -> entry
     std::vector<Node> nodes_;
+    Point3 middle_;
+    double scale_ = 1.0;
 };
 
 }  // namespace certa::core

@@ -77,6 +77,50 @@ TEST(TriangleTree, FindsTheNearestOfAll) {
     }
 }
 
+TEST(TriangleTree, FindsTheNearestAtAnyScaleAndFromFarAway) {
+    Random random(9);
+    for (const double size : {1e-120, 1e-9, 1.0, 3e5, 1e60})
+        for (const double offset : {0.0, 1.0, 1e7})
+            for (const std::uint32_t count : {1u, 2u, 5u, 17u, 300u}) {
+                std::vector<Point3> positions;
+                std::vector<Triangle> triangles;
+                const Point3 middle = (size * offset) * Point3{1.0, -2.0, 0.5};
+                for (std::uint32_t i = 0; i < count; ++i) {
+                    const Point3 corner = random_point(random);
+                    for (int k = 0; k < 3; ++k)
+                        positions.push_back(size * (corner + 0.1 * random_point(random)) + middle);
+                    triangles.push_back({VertexId{3 * i}, VertexId{3 * i + 1}, VertexId{3 * i + 2}});
+                }
+                const TriangleTree tree(positions, triangles);
+                for (int round = 0; round < 20; ++round) {
+                    const double reach = round < 10 ? 1.0 : round < 15 ? 6.0 : 1e5;
+                    const Point3 p = (size * reach) * random_point(random) + middle;
+                    double least = 1e300;
+                    for (std::uint32_t i = 0; i < count; ++i) {
+                        const Point3* t = positions.data() + 3 * i;
+                        least = std::min(least, find_nearest_on_triangle(p, t[0], t[1], t[2]).squared_distance);
+                    }
+                    EXPECT_EQ(tree.find_nearest(p).squared_distance, least);
+                    // Within a box around the point that just reaches, something is visited.
+                    const double half = 1.000001 * std::sqrt(least);
+                    std::uint32_t visited = 0;
+                    tree.visit_box(p - Point3{half, half, half}, p + Point3{half, half, half},
+                                   [&](std::uint32_t) { ++visited; });
+                    EXPECT_GT(visited, 0U);
+                }
+            }
+}
+
+TEST(TriangleTree, AsksForNothingButTheNearestWhereManyAreEqual) {
+    // A point with a hundred triangles in one place, and one at a distance.
+    std::vector<Point3> positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 5}, {1, 0, 5}, {0, 1, 5}};
+    std::vector<Triangle> triangles(100, {VertexId{0}, VertexId{1}, VertexId{2}});
+    triangles.push_back({VertexId{3}, VertexId{4}, VertexId{5}});
+    const TriangleTree tree(positions, triangles);
+    EXPECT_EQ(tree.find_nearest({0.2, 0.2, 4.0}).triangle, 100U);
+    EXPECT_EQ(tree.find_nearest({0.2, 0.2, 2.0}).squared_distance, 4.0);
+}
+
 TEST(TriangleTree, VisitsAllThatMeetABox) {
     Random random(5);
     std::vector<Point3> positions;
