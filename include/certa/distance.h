@@ -5,6 +5,7 @@
 #include <certa/run_control.h>
 
 #include <cstdint>
+#include <vector>
 
 namespace certa {
 
@@ -57,5 +58,24 @@ struct SurfaceDistance {
 ///             covering projections is explained in src/verify/distance_bound.cpp.
 SurfaceDistance measure_distance(const PolygonMesh& first, const PolygonMesh& second,
                                  const DistanceOptions& options = {}, const RunControl& control = {});
+
+/// A part of one surface that is farther from the other than allowed, or cannot be shown not to be.
+struct FarPlace {
+    bool is_on_first = true;
+    std::uint32_t polygon = 0;  ///< of the surface that the place is on
+    std::uint32_t nearest = 0;  ///< polygon of the other one
+    Point3 place;
+};
+
+/// Where the distance of two surfaces, as measure_distance bounds it, passes a limit.
+///
+/// Input:      surfaces as for measure_distance; `limit` in their unit.
+/// Result:     nothing: no point is farther than `limit`, in the sense of the bounds above. Else, for each polygon of
+/// either
+///             surface with points beyond 98 % of it, or beyond what `max_pieces` pieces decide, a place. By surface
+///             and polygon.
+/// Errors:     as measure_distance; option_out_of_range for a limit that is not above 0.
+std::vector<FarPlace> find_far_places(const PolygonMesh& first, const PolygonMesh& second, double limit,
+                                      std::uint64_t max_pieces = 1000000, const RunControl& control = {});
 
 }  // namespace certa

@@ -32,6 +32,7 @@ struct Piece {
     std::array<Point3, 3> p;
     std::uint32_t hint = no_index;  // a triangle of `to` that may be near
     double slack = 0.0;
+    std::uint32_t polygon = 0;
 };
 struct Verdict {
     double upper = infinite;
@@ -303,15 +304,15 @@ void cut(const Piece& piece, std::uint32_t hint, std::vector<Piece>& out) {
     const Point3 ab = middle(a, b);
     if (sides[longest] > 1.5 * std::max(sides[(longest + 1) % 3], sides[(longest + 2) % 3]) ||
         norm(cross(b - a, c - a)) < 0.5 * sides[longest] * sides[longest]) {
-        out.push_back({{a, ab, c}, hint, piece.slack});
-        out.push_back({{ab, b, c}, hint, piece.slack});
+        out.push_back({{a, ab, c}, hint, piece.slack, piece.polygon});
+        out.push_back({{ab, b, c}, hint, piece.slack, piece.polygon});
         return;
     }
     const Point3 bc = middle(b, c), ca = middle(c, a);
-    out.push_back({{a, ab, ca}, hint, piece.slack});
-    out.push_back({{ab, b, bc}, hint, piece.slack});
-    out.push_back({{ca, bc, c}, hint, piece.slack});
-    out.push_back({{ab, bc, ca}, hint, piece.slack});
+    out.push_back({{a, ab, ca}, hint, piece.slack, piece.polygon});
+    out.push_back({{ab, b, bc}, hint, piece.slack, piece.polygon});
+    out.push_back({{ca, bc, c}, hint, piece.slack, piece.polygon});
+    out.push_back({{ab, bc, ca}, hint, piece.slack, piece.polygon});
 }
 
 /// Triangles that occur in a triangulation. A sliver on a diagonal (a corner without a turn) is left out: it is within
@@ -336,10 +337,25 @@ std::vector<Piece> make_pieces(const PolygonSurface& from, double resolution, do
                     continue;
                 }
             }
-            pieces.push_back({p, no_index, from.slack(q)});
+            pieces.push_back({p, no_index, from.slack(q), static_cast<std::uint32_t>(q)});
         }
     }
     return pieces;
+}
+
+std::vector<Verdict> judge_all(const std::vector<Piece>& pieces, const PolygonSurface& to,
+                               const core::TriangleTree& tree, double enough, double shrinking,
+                               const RunControl& control) {
+    std::vector<Verdict> verdicts(pieces.size());
+    const std::size_t grain = std::max<std::size_t>(1024, to.polygon_count() / 16);
+    core::parallel_for(pieces.size(), grain, control, [&](std::size_t begin, std::size_t end) {
+        Judge judge(to, tree);
+        for (std::size_t i = begin; i < end; ++i) {
+            if (i % 256 == 0 && control.cancelled()) return;
+            verdicts[i] = judge.judge(pieces[i], enough, shrinking);
+        }
+    });
+    return verdicts;
 }
 
 }  // namespace
@@ -350,21 +366,12 @@ DistanceBound bound_distance(const PolygonSurface& from, const PolygonSurface& t
     result.lowest = options.lowest;
     double extra = 0.0;
     std::vector<Piece> pieces = make_pieces(from, options.resolution, extra), next;
-    std::vector<Verdict> verdicts;
     std::size_t looked_at = 0;
     while (!pieces.empty()) {
         const auto enough = [&] { return std::max(result.lowest * (1.0 + options.tolerance), options.resolution); };
         const double enough_before = enough(), shrinking = 0.25 * (enough_before - result.lowest);
-        verdicts.assign(pieces.size(), {});
         looked_at += pieces.size();
-        const std::size_t grain = std::max<std::size_t>(1024, to.polygon_count() / 16);
-        core::parallel_for(pieces.size(), grain, control, [&](std::size_t begin, std::size_t end) {
-            Judge judge(to, tree);
-            for (std::size_t i = begin; i < end; ++i) {
-                if (i % 256 == 0 && control.cancelled()) return;
-                verdicts[i] = judge.judge(pieces[i], enough_before, shrinking);
-            }
-        });
+        const std::vector<Verdict> verdicts = judge_all(pieces, to, tree, enough_before, shrinking, control);
         if (control.cancelled()) {
             result.is_cancelled = true;
             return result;
@@ -386,6 +393,32 @@ DistanceBound bound_distance(const PolygonSurface& from, const PolygonSurface& t
     }
     result.bound += extra;
     return result;
+}
+
+std::vector<FarPiece> find_far_pieces(const PolygonSurface& from, const PolygonSurface& to,
+                                      const core::TriangleTree& tree, double limit, std::size_t max_pieces,
+                                      const RunControl& control) {
+    double extra = 0.0;
+    std::vector<Piece> pieces = make_pieces(from, 0.01 * limit, extra), next;
+    const double enough = limit - extra, least = 0.98 * enough;
+    std::vector<FarPiece> far;
+    std::size_t looked_at = 0;
+    while (!pieces.empty() && !control.cancelled()) {
+        looked_at += pieces.size();
+        const std::vector<Verdict> verdicts = judge_all(pieces, to, tree, enough, 0.25 * (enough - least), control);
+        next.clear();
+        for (std::size_t i = 0; i < pieces.size(); ++i) {
+            const Verdict& verdict = verdicts[i];
+            if (verdict.upper <= enough) continue;
+            if (verdict.lower > least || looked_at >= max_pieces)
+                far.push_back({pieces[i].polygon, to.polygon_of(verdict.hint), verdict.place});
+            else
+                cut(pieces[i], verdict.hint, next);
+        }
+        pieces.swap(next);
+    }
+    std::stable_sort(far.begin(), far.end(), [](const auto& a, const auto& b) { return a.polygon < b.polygon; });
+    return far;
 }
 
 }  // namespace certa::verify

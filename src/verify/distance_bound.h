@@ -2,6 +2,8 @@
 // A proved bound on how far the points of one surface are from another.
 #include <certa/run_control.h>
 
+#include <vector>
+
 #include "verify/polygon_surface.h"
 
 namespace certa::verify {
@@ -24,5 +26,17 @@ struct DistanceBound {
 /// triangulations: certa/distance.h. `tree` holds to.triangles(). Coordinates are at most 1.
 DistanceBound bound_distance(const PolygonSurface& from, const PolygonSurface& to, const core::TriangleTree& tree,
                              const BoundOptions& options, const RunControl& control);
+
+/// A piece of a polygon that is too far away, or too hard to tell.
+struct FarPiece {
+    std::uint32_t polygon = 0;  ///< of `from`
+    std::uint32_t nearest = 0;  ///< polygon of `to`
+    Point3 place;
+};
+/// Pieces that are not within `limit`; those beyond 98 % of it may be among them. None: bound_distance is at most
+/// `limit`.
+std::vector<FarPiece> find_far_pieces(const PolygonSurface& from, const PolygonSurface& to,
+                                      const core::TriangleTree& tree, double limit, std::size_t max_pieces,
+                                      const RunControl& control);
 
 }  // namespace certa::verify

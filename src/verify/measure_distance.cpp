@@ -124,26 +124,35 @@ void check_input(const PolygonMesh& first, const PolygonMesh& second, const Dist
     if (!defects.empty()) throw InputError(std::move(defects));
 }
 
+/// Both surfaces, cut into the triangles that are nearest to the other one.
+struct Surfaces {
+    Surfaces(const PolygonMesh& first, const PolygonMesh& second, const RunControl& control)
+        : exponent(verify::find_exponent(first, second)), a(first, exponent), b(second, exponent) {
+        tree_b.emplace(b.positions(), b.triangles());
+        a.choose(*tree_b, control);
+        tree_a.emplace(a.positions(), a.triangles());
+        if (!b.has_choices()) return;
+        b.choose(*tree_a, control);
+        tree_b.emplace(b.positions(), b.triangles());
+    }
+    int exponent;
+    PolygonSurface a, b;
+    std::optional<core::TriangleTree> tree_a, tree_b;
+};
+
 }  // namespace
 
 SurfaceDistance measure_distance(const PolygonMesh& first, const PolygonMesh& second, const DistanceOptions& options,
                                  const RunControl& control) {
     check_input(first, second, options);
-    const int exponent = verify::find_exponent(first, second);
-    PolygonSurface a(first, exponent), b(second, exponent);
-    std::optional<core::TriangleTree> tree_a, tree_b;
-    tree_b.emplace(b.positions(), b.triangles());
-    a.choose(*tree_b, control);
-    tree_a.emplace(a.positions(), a.triangles());
-    if (b.has_choices()) {
-        b.choose(*tree_a, control);
-        tree_b.emplace(b.positions(), b.triangles());
-    }
+    const Surfaces surfaces(first, second, control);
+    const PolygonSurface &a = surfaces.a, &b = surfaces.b;
+    const int exponent = surfaces.exponent;
     SurfaceDistance result;
     result.diagonal = diagonal_of(b);
     control.report("distance", 0.1);
-    result.to_second = sample(a, *tree_b, options, 0, control);
-    result.to_first = sample(b, *tree_a, options, 1, control);
+    result.to_second = sample(a, *surfaces.tree_b, options, 0, control);
+    result.to_first = sample(b, *surfaces.tree_a, options, 1, control);
     control.report("distance", 0.4);
     const auto bound = [&](OneSidedDistance& side, const PolygonSurface& from, const PolygonSurface& to,
                            const core::TriangleTree& tree) {
@@ -155,9 +164,9 @@ SurfaceDistance measure_distance(const PolygonMesh& first, const PolygonMesh& se
         side.bound = found.bound;
         result.is_tight = result.is_tight && found.is_tight;
     };
-    bound(result.to_second, a, b, *tree_b);
+    bound(result.to_second, a, b, *surfaces.tree_b);
     control.report("distance", 0.7);
-    bound(result.to_first, b, a, *tree_a);
+    bound(result.to_first, b, a, *surfaces.tree_a);
     if (control.cancelled()) {
         result.outcome = Outcome::cancelled;
         return result;
@@ -170,6 +179,25 @@ SurfaceDistance measure_distance(const PolygonMesh& first, const PolygonMesh& se
     result.hausdorff = std::max(result.to_second.largest, result.to_first.largest);
     result.hausdorff_bound = std::max(result.to_second.bound, result.to_first.bound);
     return result;
+}
+
+std::vector<FarPlace> find_far_places(const PolygonMesh& first, const PolygonMesh& second, double limit,
+                                      std::uint64_t max_pieces, const RunControl& control) {
+    check_input(first, second, {});
+    if (!(limit > 0.0)) throw InputError({{DefectKind::option_out_of_range, {}, {}, "limit must be above 0"}});
+    const Surfaces surfaces(first, second, control);
+    const PolygonSurface &a = surfaces.a, &b = surfaces.b;
+    std::vector<FarPlace> places;
+    const auto add = [&](bool is_on_first, const std::vector<verify::FarPiece>& pieces) {
+        for (const verify::FarPiece& piece : pieces)
+            if (places.empty() || places.back().is_on_first != is_on_first || places.back().polygon != piece.polygon ||
+                places.back().nearest != piece.nearest)
+                places.push_back({is_on_first, piece.polygon, piece.nearest, scaled(piece.place, surfaces.exponent)});
+    };
+    const double scaled_limit = std::nextafter(std::ldexp(limit, -surfaces.exponent), 0.0);
+    add(true, verify::find_far_pieces(a, b, *surfaces.tree_b, scaled_limit, max_pieces, control));
+    add(false, verify::find_far_pieces(b, a, *surfaces.tree_a, scaled_limit, max_pieces, control));
+    return places;
 }
 
 }  // namespace certa

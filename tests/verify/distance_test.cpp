@@ -153,6 +153,45 @@ TEST(Distance, BoundsAreAboveBruteForceOnRandomSoups) {
     }
 }
 
+TEST(FarPlaces, AreThePolygonsBeyondTheLimit) {
+    // One square of an 8 x 8 grid is lifted by its four corners; limits below and above the height.
+    const PolygonMesh flat = make_grid(8, 8, [](double u, double v) { return Point3{u, v, 0.0}; });
+    PolygonMesh lifted = flat;
+    const std::size_t square = 27;
+    for (std::size_t i = lifted.offsets[square]; i < lifted.offsets[square + 1]; ++i)
+        lifted.positions[index_of(lifted.corners[i])].z = 0.02;
+    EXPECT_TRUE(find_far_places(lifted, flat, 0.021).empty());
+    const std::vector<FarPlace> places = find_far_places(lifted, flat, 0.01);
+    ASSERT_FALSE(places.empty());
+    std::size_t on_first = 0, on_second = 0;
+    bool has_square = false;
+    for (const FarPlace& place : places) {
+        ++(place.is_on_first ? on_first : on_second);
+        has_square = has_square || (place.is_on_first && place.polygon == square && place.nearest == square);
+        const std::size_t row = place.polygon / 8, column = place.polygon % 8;  // the lifted corners' squares
+        EXPECT_TRUE(row >= 2 && row <= 4 && column >= 2 && column <= 4) << place.polygon;
+        EXPECT_NEAR(place.place.z, place.is_on_first ? 0.015 : 0.0, 0.006);
+    }
+    EXPECT_TRUE(has_square);
+    EXPECT_GT(on_first, 0U);
+    EXPECT_GT(on_second, 0U);
+}
+
+TEST(FarPlaces, AreNoneExactlyWhereTheBoundHolds) {
+    core::Random random(5);
+    for (int round = 0; round < 6; ++round) {
+        const double height = 0.1 * random.uniform();
+        const auto bump = [&](double u, double v) {
+            return Point3{u, v, height * std::sin(7.0 * u) * std::cos(5.0 * v) + 0.2 * u * v};
+        };
+        const PolygonMesh coarse = make_grid(5, 4, bump), fine = cut_quads(make_grid(20, 17, bump), nullptr);
+        const SurfaceDistance d = measure_distance(coarse, fine);
+        EXPECT_TRUE(find_far_places(coarse, fine, 1.021 * d.hausdorff_bound + 1e-12).empty());
+        EXPECT_FALSE(find_far_places(coarse, fine, 0.95 * d.hausdorff_bound).empty());  // bounds are 2 % tight
+    }
+    EXPECT_THROW(find_far_places(make_cube(1), make_cube(2), 0.0), InputError);
+}
+
 TEST(Distance, DoesNotDependOnThreadsNorOnTheScale) {
     const PolygonMesh a = make_sphere(20, 30, 1.0), b = make_sphere(33, 41, 1.05);
     RunControl one_thread;
