@@ -66,6 +66,7 @@ struct RemeshStatistics {
     /// Where polygons would turn away, meet or be too far, triangles of the input stand: regions of these, and
     /// triangles.
     std::size_t mended_regions = 0, mended_triangles = 0;
+    std::size_t cut_faces = 0;  ///< between lines that are triangles, so that every way to fill them keeps the error
     double distance_bound = 0.0;  ///< where an error was asked for: proved, both ways, in the input's unit
     std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0;
     std::size_t t_nodes = 0;            ///< polygons' corners without a turn, before they became quads and triangles

@@ -75,6 +75,7 @@ public:
           is_fixed_(fixed_vertices(mesh_)),
           patcher_(layout) {
         in_set_.assign(patcher_.face_count(), 0);
+        is_cut_.assign(patcher_.face_count(), 0);
     }
 
     MendingReport run() {
@@ -87,6 +88,7 @@ public:
         }
         report.regions = regions_.size();
         for (const Region& region : regions_) report.faces += region.faces.size(), report.triangles += region.triangles;
+        for (std::size_t f = 0; f < in_set_.size(); ++f) report.cut_faces += in_set_[f] == 0 ? is_cut_[f] : 0;
         tidy(result_);
         out_ = std::move(result_);
         return report;
@@ -200,7 +202,7 @@ private:
     }
     /// The polygons of no region, with the corners that regions have left on their sides.
     void add_polygons_around(const std::map<std::array<Index, 2>, std::vector<Index>>& between) {
-        CoarseMesh changed = result_.without_polygons();
+        CoarseMesh changed = result_.without_polygons(), cut = changed;
         std::vector<Index> ring;
         for (std::size_t q = 0; q < base_.polygon_count(); ++q) {
             const Index parent = base_.parent(q);
@@ -212,12 +214,14 @@ private:
                 const auto found = between.find({old[i], old[(i + 1) % old.size()]});
                 if (found != between.end()) ring.insert(ring.end(), found->second.begin(), found->second.end());
             }
-            (ring.size() == old.size() ? result_ : changed).add_polygon(ring, parent);
+            const bool is_cut = parent != no_index && is_cut_[parent] != 0;
+            (is_cut ? cut : ring.size() == old.size() ? result_ : changed).add_polygon(ring, parent);
         }
         // Corners without a turn leave too much to a reader who fills polygons: these are cut here.
         changed = rule_.all_triangles ? make_triangles(changed, judge_.tree) : make_quad_dominant(changed);
-        for (std::size_t q = 0; q < changed.polygon_count(); ++q)
-            result_.add_polygon(changed.polygon(q), changed.parent(q));
+        cut = make_triangles(cut, judge_.tree);
+        for (const CoarseMesh& part : {changed, cut})
+            for (std::size_t q = 0; q < part.polygon_count(); ++q) result_.add_polygon(part.polygon(q), part.parent(q));
     }
 
     /// Sides that two polygons walk in the same direction: a cut has repeated one.
@@ -245,10 +249,9 @@ private:
             // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
             add_missed_creases(broken, 0.94 * bound());
         }
-        if (rule_.error > 0.0) add_far(broken);
+        bool has_changed = rule_.error > 0.0 && broken.empty() && cut_far(broken);
         std::sort(broken.begin(), broken.end());
         broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
-        bool has_changed = false;
         report.left.clear();
         std::map<Index, std::vector<Index>> broken_patches;
         for (const Index q : broken) {
@@ -350,17 +353,24 @@ private:
         }
         return farthest;
     }
+    PolygonMesh result_as_polygons() const {
+        PolygonMesh mesh{result_.points, {}, result_.offsets};
+        for (const Index v : result_.corners) mesh.corners.push_back(VertexId{v});
+        return mesh;
+    }
+    PolygonMesh input_as_polygons() const {
+        PolygonMesh mesh{judge_.input.positions, {}, {0}};
+        for (const Triangle& t : judge_.input.triangles) {
+            mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
+            mesh.offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
+        }
+        return mesh;
+    }
     /// The proved distance of the result, for every way to fill its polygons.
     double bound() const {
-        PolygonMesh result{result_.points, {}, result_.offsets}, input{judge_.input.positions, {}, {0}};
-        for (const Index v : result_.corners) result.corners.push_back(VertexId{v});
-        for (const Triangle& t : judge_.input.triangles) {
-            input.corners.insert(input.corners.end(), t.begin(), t.end());
-            input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
-        }
         DistanceOptions options;
         options.samples = 10000;
-        return measure_distance(result, input, options, control_).hausdorff_bound;
+        return measure_distance(result_as_polygons(), input_as_polygons(), options, control_).hausdorff_bound;
     }
 
     /// Of the input's vertices from the result: less than the bound.
@@ -377,41 +387,22 @@ private:
         return std::sqrt(square);
     }
 
-    /// Polygons farther from the input than the error, and those below vertices of the input that are.
-    void add_far(std::vector<Index>& broken) const {
-        const double square = 0.95 * 0.95 * rule_.error * rule_.error;
-        const CoarseMesh triangles = make_triangles(result_, judge_.tree);
-        std::vector<Triangle> filled;
-        std::vector<Index> polygon_of;
-        for (std::size_t q = 0; q < result_.polygon_count(); ++q)
-            polygon_of.insert(polygon_of.end(), result_.polygon(q).size() - 2, static_cast<Index>(q));
-        std::vector<std::uint8_t> is_far(triangles.polygon_count(), 0);
-        core::parallel_for(is_far.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t i = begin; i < end; ++i) {
-                const auto t = triangles.polygon(i);
-                const Point3 &a = result_.points[t[0]], &b = result_.points[t[1]], &c = result_.points[t[2]];
-                for (int u = 0; u <= 4; ++u)
-                    for (int v = 0; u + v <= 4; ++v) {
-                        const Point3 p = (0.25 * u) * a + (0.25 * v) * b + (0.25 * (4 - u - v)) * c;
-                        if (judge_.tree.find_nearest(p).squared_distance > square) is_far[i] = 1;
-                    }
+    /// Where the error is not kept: polygons that can be filled in several ways are cut in the best one; triangles are
+    /// broken. True: something was cut.
+    bool cut_far(std::vector<Index>& broken) {
+        constexpr std::uint64_t pieces = 200000;
+        bool has_cut = false;
+        for (const FarPlace& place :
+             find_far_places(result_as_polygons(), input_as_polygons(), rule_.error, pieces, control_)) {
+            const Index q = place.is_on_first ? place.polygon : place.nearest, f = result_.parent(q);
+            if (result_.polygon(q).size() > 3 && f != no_index && is_cut_[f] == 0) {
+                is_cut_[f] = 1;
+                has_cut = true;
+            } else if (result_.polygon(q).size() == 3 || f == no_index) {
+                broken.push_back(q);
             }
-        });
-        for (std::size_t i = 0; i < is_far.size(); ++i) {
-            const auto t = triangles.polygon(i);
-            filled.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
-            if (is_far[i] != 0) broken.push_back(polygon_of[i]);
         }
-        const core::TriangleTree surface(result_.points, filled);
-        std::vector<Index> below(mesh_.points.size(), no_index);
-        core::parallel_for(below.size(), 256, control_, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t v = begin; v < end; ++v) {
-                const core::NearestPoint nearest = surface.find_nearest(mesh_.points[v]);
-                if (nearest.squared_distance > square) below[v] = polygon_of[nearest.triangle];
-            }
-        });
-        for (const Index q : below)
-            if (q != no_index) broken.push_back(q);
+        return has_cut;
     }
 
     const Layout& layout_;
@@ -426,6 +417,7 @@ private:
     RegionPatcher patcher_;
 
     std::vector<std::uint8_t> in_set_;  ///< per face of the graph: the input takes its place
+    std::vector<std::uint8_t> is_cut_;  ///< likewise: triangles do
     std::vector<Ball> kept_;
     std::vector<Region> regions_;
     std::vector<Index> region_of_;  ///< per face

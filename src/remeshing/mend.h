@@ -15,7 +15,7 @@ struct MendingRule {
 
 struct MendingReport {
     std::size_t rounds = 0, regions = 0, faces = 0, triangles = 0;  ///< faces of the graph, and what replaces them
-    std::size_t split_quads = 0;
+    std::size_t split_quads = 0, cut_faces = 0;
     std::vector<Point3> left;  ///< where something is still broken: the input itself is
 };
 

@@ -106,7 +106,15 @@ private:
         return static_cast<double>(statistics.mended_triangles) / static_cast<double>(mesh.polygon_count());
     }
     void search(double wanted);
+    struct Attempt {
+        Draft draft;
+        CoarseMesh mesh;
+        RemeshStatistics statistics;
+    };
     void meet_error();
+    std::optional<Attempt> attempt_error(double most_far);
+    void give_input_within_error();
+    double prove_distance();
     double refine_where_far(double error, double limit);
     double far_share(double limit) const;
     double wanted_error() const {
@@ -120,7 +128,6 @@ private:
     void emit(const CoarseMesh& coarse);
     void place(CoarseMesh& mesh);
     CoarseMesh cut(const CoarseMesh& polygons);
-    CoarseMesh cut_warped(const CoarseMesh& mesh, double limit) const;
     void describe_lines();
     void describe_polygons();
 
@@ -136,7 +143,8 @@ private:
     std::vector<double> caps_;        ///< per wedge: largest spacing, 0 where free
     std::vector<double> patch_caps_;  ///< per patch, of the last refinement
     TraceRule trace_rule_;
-    CoarseMesh placed_;  ///< what `finish` has made
+    double balance_ = 1.0;  ///< see SpacingRule
+    CoarseMesh placed_;     ///< what `finish` has made
     std::optional<Draft> best_;
 };
 
@@ -145,15 +153,18 @@ SpacingRule Remesher::rule_of(double error) const {
     rule.error = error;
     rule.isotropy = options_.isotropy;
     rule.transfer = options_.transfer;
+    rule.balance = balance_;
     return rule;
 }
 
 double Remesher::start_error(double wanted) {
     if (wanted == 0.0) return 1.4 * wanted_error();
+    constexpr double share = 0.68;  // of vertices expected where lines are as far apart as they may: gaps are narrower
     double error = 4e-3 * mesh_.diagonal;
     for (int round = 0; round < 4; ++round)
-        error *= std::clamp(expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_)) / wanted,
-                            0.05, 20.0);
+        error *= std::clamp(
+            expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_)) / (share * wanted), 0.05,
+            20.0);
     return error;
 }
 
@@ -304,26 +315,60 @@ double Remesher::count_of(const Draft& draft) const {
                                    : make_quad_dominant(draft.polygons).polygon_count());
 }
 
-/// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps is varied too.
+/// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps, then one family
+/// gets more lines for fewer of the other.
 void Remesher::search(double wanted) {
-    double error = start_error(wanted), best_miss = 1e300, low = 0.0, high = 1e300;
-    constexpr std::array<double, 12> gaps{0.75, 0.75, 0.75, 0.75, 0.75, 0.7, 0.8, 0.7, 0.8, 0.66, 0.85, 0.75};
-    for (const double gap : gaps) {
-        if (control_.cancelled()) return;
-        trace_rule_.gap_above = gap;
+    double best_miss = 1e300;
+    int networks = 0;
+    /// How far the count is off, as a logarithm; empty: near enough, or cancelled.
+    const auto attempt = [&](double error) -> std::optional<double> {
         Draft d = draft(error);
-        const double count = std::max(count_of(d), 1.0), miss = std::abs(std::log(count / wanted));
+        if (control_.cancelled()) return std::nullopt;
+        ++networks;
+        const double off = std::log(std::max(count_of(d), 1.0) / wanted);
         const bool whole = d.flaws.empty();
-        if (!best_ || (whole && miss < best_miss)) {
-            best_miss = whole ? miss : 1e300;
+        if (!best_ || (whole && std::abs(off) < best_miss)) {
+            best_miss = whole ? std::abs(off) : 1e300;
             best_.emplace(std::move(d));
         }
-        if (best_miss < 0.025) return;
-        if (gap == gaps[0])
-            (count > wanted ? low : high) = count > wanted ? std::max(low, error) : std::min(high, error);
-        double next = error * std::clamp(count / wanted, 0.3, 3.0);
-        if (low > 0.0 && high < 1e300 && (next <= low || next >= high)) next = std::sqrt(low * high);
-        error = next;
+        if (best_miss < (networks < 4 ? 0.025 : 0.045)) return std::nullopt;
+        return off;
+    };
+    trace_rule_ = {};
+    balance_ = 1.0;
+    const double start = start_error(wanted);
+    struct End {
+        double knob = 0.0, off = 0.0;
+    };
+    std::optional<End> many, few, last;
+    double error = start;
+    for (int round = 0; round < 6; ++round) {
+        const std::optional<double> off = attempt(error);
+        if (!off) return;
+        (*off > 0.0 ? many : few) = End{std::log(error), *off};
+        double step = *off;
+        if (last) step /= std::clamp((last->off - *off) / (std::log(error) - last->knob), 0.5, 1.5);
+        step = std::clamp(step, -1.2, 1.2);
+        last = End{std::log(error), *off};
+        if (many && few) {
+            const double part = std::clamp(many->off / (many->off - few->off), 0.15, 0.85);
+            step = many->knob + part * (few->knob - many->knob) - std::log(error);
+        }
+        error *= std::exp(step);
+    }
+    if (!many || !few) return;
+    error = std::exp(0.5 * (many->knob + few->knob));
+    double low = 0.62, high = 0.9;
+    for (const double first : {best_miss, 0.0, 0.0, 0.0}) {
+        trace_rule_.gap_above = first > 0.0 ? 0.75 : 0.5 * (low + high);
+        const std::optional<double> off = attempt(error);
+        if (!off) return;
+        (*off > 0.0 ? low : high) = trace_rule_.gap_above;
+    }
+    trace_rule_.gap_above = 0.75;
+    for (const double balance : {1.02, 0.98, 1.05, 0.95}) {
+        balance_ = balance;
+        if (!attempt(best_->error)) return;
     }
 }
 
@@ -378,66 +423,73 @@ double Remesher::far_share(double limit) const {
                     static_cast<double>(far_below) / static_cast<double>(mesh_.points.size()));
 }
 
-/// Lines closer together until the result's distance to the input, proved for every way to fill its polygons, is within
-/// the bound.
-void Remesher::meet_error() {
-    double error = start_error();
-    PolygonMesh input;
-    input.positions = input_.positions;
+/// The bound that is proved for the result as it stands, for every way to fill its polygons.
+double Remesher::prove_distance() {
+    PolygonMesh input{input_.positions, {}, {0}};
     for (const Triangle& t : input_.triangles) {
         input.corners.insert(input.corners.end(), t.begin(), t.end());
         input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
     }
+    DistanceOptions options;
+    options.samples = 10000;
+    const SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
+    watch_.stage("certificate");
+    return result_.statistics.distance_bound = distance.hausdorff_bound;
+}
+
+/// One network, mended so that the error is kept; empty where that would be mending above all.
+std::optional<Remesher::Attempt> Remesher::attempt_error(double most_far) {
     const double wanted = wanted_error();
-    constexpr int most_rounds = 5;
-    for (int round = 0; round < most_rounds; ++round) {
+    if (far_share(wanted) > most_far) return std::nullopt;
+    constexpr double tightness = 1.03;  // bounds are proved to within 2 %
+    CoarseMesh mesh = mended(placed_, wanted / tightness);
+    if (control_.cancelled()) return std::nullopt;
+    emit(mesh);
+    if (prove_distance() > wanted) return std::nullopt;
+    return Attempt{std::move(*best_), std::move(mesh), result_.statistics};
+}
+
+/// Lines closer together until mending, which keeps the error by cutting and by triangles of the input, has little to
+/// do. What has the fewest faces counts: whatever is mended has many.
+void Remesher::meet_error() {
+    double error = start_error();
+    constexpr std::array<double, 6> most_far{0.002, 0.002, 0.002, 0.02, 0.02, 0.3};
+    std::optional<Attempt> kept;
+    for (const double far : most_far) {
         best_.emplace(draft(error));
         if (control_.cancelled()) return;
         if (!finish()) break;
-        DistanceOptions options;
-        options.samples = 10000;
-        options.tolerance = 0.05;
-        options.resolution = Length{0.02 * wanted, false};
-        // Samples first: they tell cheaply that it is not good enough.
-        options.bound = false;
-        emit(placed_);
-        SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
-        double reached = distance.hausdorff;
-        const double share = reached <= wanted ? 0.0 : far_share(wanted);
-        // A few places that are too far are mended; more of them want closer lines.
-        if (share < (round < 2 ? 0.0 : 0.03) || reached <= wanted || round + 1 == most_rounds) {
-            // Warped quads are what a bound for all ways to fill them fails on: cut more and more of them.
-            options.bound = true;
-            const bool may_cut = options_.output == RemeshOutput::quad_dominant && options_.subdivide == 0;
-            for (const double limit : {0.9, 0.8, 0.6, 0.0}) {
-                if (control_.cancelled()) return;
-                if (limit < (round < 2 ? 0.8 : round < 3 ? 0.6 : 0.0)) break;  // more lines first: they keep quads
-                emit(mended(may_cut ? cut_warped(placed_, limit * wanted) : placed_, wanted));
-                distance = measure_distance(result_.mesh, input, options, control_);
-                reached = distance.hausdorff_bound;
-                result_.statistics.distance_bound = reached;
-                if (reached <= wanted && !control_.cancelled()) {
-                    watch_.stage("certificate");
-                    return;
-                }
-                if (!may_cut) break;
-            }
-        }
-        watch_.stage("certificate");
+        std::optional<Attempt> next = attempt_error(far);
         if (control_.cancelled()) return;
+        if (next) {
+            const auto faces = [](const Attempt& attempt) { return double(attempt.mesh.polygon_count()); };
+            if (kept && faces(*next) > 0.98 * faces(*kept)) break;
+            kept.emplace(std::move(*next));
+            const RemeshStatistics& s = kept->statistics;
+            if (double(s.mended_triangles) < 0.05 * faces(*kept) && double(s.cut_faces) < 0.1 * faces(*kept)) break;
+        }
         // Far in a few places: lines closer together there; far nearly everywhere: a smaller epsilon.
-        const double far = refine_where_far(error, 0.75 * std::min(wanted, reached));
-        if (far > 0.1 || far == 0.0) error *= std::clamp(0.85 * wanted / reached, 0.25, 0.7);
+        const double share = refine_where_far(error, 0.75 * wanted_error());
+        if (share > 0.1 || share == 0.0) error *= 0.7;
     }
-    // Nothing else has helped: triangles of the input, as few as the error allows.
+    if (!kept) {
+        give_input_within_error();
+        return;
+    }
+    best_.emplace(std::move(kept->draft));
+    kept->statistics.stage_seconds = result_.statistics.stage_seconds;
+    kept->statistics.rounds = result_.statistics.rounds;
+    result_.statistics = std::move(kept->statistics);
+    emit(kept->mesh);
+}
+
+/// Nothing else has helped: triangles of the input, as few as the error allows.
+void Remesher::give_input_within_error() {
+    const double wanted = wanted_error();
     for (const double part : {0.5, 0.2, 1e-4}) {
         if (control_.cancelled()) return;
         give_input(part * wanted);
-        DistanceOptions options;
-        options.samples = 10000;
-        const SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
-        result_.statistics.distance_bound = distance.hausdorff_bound;
-        if (distance.hausdorff_bound <= wanted) return;
+        if (prove_distance() <= wanted) return;
     }
     result_.outcome = Outcome::over_budget;
     result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
@@ -487,46 +539,6 @@ CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
             return make_triangles(polygons, *tree_);
     }
     return polygons;
-}
-
-/// Quads that are farther than `limit` from the input on either diagonal, or that are not convex, become triangles on
-/// the diagonal nearer to the input: what an error is proved for must not depend on how a reader fills a quad.
-CoarseMesh Remesher::cut_warped(const CoarseMesh& mesh, double limit) const {
-    const CoarseMesh triangles = make_triangles(mesh, *tree_);
-    const auto is_far = [&](const Point3& a, const Point3& b, const Point3& c) {
-        for (int u = 0; u <= 4; ++u)
-            for (int v = 0; u + v <= 4; ++v) {
-                const Point3 p = (0.25 * u) * a + (0.25 * v) * b + (0.25 * (4 - u - v)) * c;
-                if (tree_->find_nearest(p).squared_distance > limit * limit) return true;
-            }
-        return false;
-    };
-    std::vector<std::uint8_t> is_warped(mesh.polygon_count(), 0);
-    core::parallel_for(is_warped.size(), 64, control_, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-            const auto ring = mesh.polygon(i);
-            if (ring.size() != 4) continue;
-            const Point3 &a = mesh.points[ring[0]], &b = mesh.points[ring[1]], &c = mesh.points[ring[2]],
-                         &d = mesh.points[ring[3]];
-            const Point3 n = cross(c - a, d - b);
-            const bool is_convex = norm(n) > 0.0 && dot(cross(b - a, d - a), n) > 0.0 &&
-                                   dot(cross(c - b, a - b), n) > 0.0 && dot(cross(d - c, b - c), n) > 0.0 &&
-                                   dot(cross(a - d, c - d), n) > 0.0;
-            is_warped[i] =
-                !is_convex || is_far(a, b, c) || is_far(a, c, d) || is_far(a, b, d) || is_far(b, c, d) ? 1 : 0;
-        }
-    });
-    CoarseMesh out = mesh.without_polygons();
-    for (std::size_t i = 0, t = 0; i < mesh.polygon_count(); ++i) {
-        const auto ring = mesh.polygon(i);
-        const std::size_t end = t + ring.size() - 2;
-        if (is_warped[i] != 0)
-            for (std::size_t k = t; k < end; ++k) out.add_polygon(triangles.polygon(k), mesh.parent(i));
-        else
-            out.add_polygon(ring, mesh.parent(i));
-        t = end;
-    }
-    return crowded_vertices(out).empty() ? out : mesh;
 }
 
 void Remesher::describe_polygons() {
@@ -579,6 +591,7 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
     RemeshStatistics& s = result_.statistics;
     s.mended_regions = report.regions;
     s.mended_triangles = report.triangles;
+    s.cut_faces = report.cut_faces;
     for (std::uint64_t round = 0; round < options_.subdivide; ++round) mesh = subdivide(mesh);
     watch_.stage("mending");
     return mesh;
@@ -616,6 +629,7 @@ void Remesher::finish_count() {
     for (int round = 0; round < 2 && options_.subdivide == 0 && final_count(mesh) > 1.04 * wanted; ++round) {
         if (control_.cancelled()) return;
         const double before = final_count(placed_), added = final_count(mesh) - before;
+        if (added < 0.01 * wanted) break;
         const double aim = std::max(before * wanted / (before + added), wanted - 1.3 * added);
         Draft kept = std::move(*best_);
         CoarseMesh kept_placed = std::move(placed_);

@@ -79,8 +79,8 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
     for (Index w = 0; w < mesh.wedge_count(); ++w) {
         const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
         const double low = std::abs(field.k_min[w]), high = std::abs(field.k_max[w]);
-        spacing.at[along_max][w] = chord_of(half * high + (1.0 - half) * low, largest, rule);
-        spacing.at[along_min][w] = chord_of(half * low + (1.0 - half) * high, largest, rule);
+        spacing.at[along_max][w] = rule.balance * chord_of(half * high + (1.0 - half) * low, largest, rule);
+        spacing.at[along_min][w] = chord_of(half * low + (1.0 - half) * high, largest, rule) / rule.balance;
     }
     for (std::size_t family = 0; family < 2; ++family) {
         const std::vector<double> raw = spacing.at[family];

@@ -9,6 +9,7 @@ struct SpacingRule {
     double isotropy = 0.0;  ///< rho
     double transfer = 0.5;
     double largest = 0.35;  ///< in diagonals of the component: where curvature vanishes there need not be lines
+    double balance = 1.0;   ///< above 1: fewer lines along k_max, more along k_min
     double growth = 0.7;    ///< spacing grows by at most this much per length: curvature is not constant over a gap
 };
 

@@ -48,7 +48,7 @@ public:
           rule_(rule),
           family_(family),
           control_(control),
-          proximity_(mesh_, spacing_, 2.2),
+          proximity_(mesh_, spacing_, 1.3),
           seeded_(mesh_.edge_halfedges.size(), 0) {
         umbilic_faces_.assign(mesh_.faces.size(), false);
         for (const FieldUmbilic& u : field_.umbilics) umbilic_faces_[u.face] = true;
