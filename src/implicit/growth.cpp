@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <deque>
+#include <queue>
 
 namespace certa::implicit {
 
@@ -142,12 +143,12 @@ bool is_connected(std::uint64_t set, const std::uint64_t* masks) {
 
 class Grower {
 public:
-    Grower(const Triangulation& triangulation, LinkCache& links, std::span<const char> favoured = {})
+    Grower(const Triangulation& triangulation, LinkCache& links, std::span<const float> ranks = {})
         : t_(triangulation),
           links_(links),
           test_(triangulation.point_count()),
           state_(triangulation.point_count()),
-          favoured_(favoured) {
+          ranks_(ranks) {
         growth_.marked.assign(triangulation.point_count(), 0);
         for (std::uint32_t p = 0; p < state_.size(); ++p) state_[p] = t_.sign(p) > 0 ? positive : 0;
     }
@@ -162,10 +163,8 @@ public:
             if (((all ^ any) & positive) == 0) continue;
             for (const std::uint32_t p : t) enqueue(p);
         }
-        while (!queue_.empty() || !later_.empty()) {
-            std::deque<std::uint32_t>& queue = queue_.empty() ? later_ : queue_;
-            const std::uint32_t point = queue.front();
-            queue.pop_front();
+        while (!queue_.empty() || !ranked_.empty()) {
+            const std::uint32_t point = next();
             state_[point] &= static_cast<std::uint8_t>(~queued);
             try_to_join(point);
         }
@@ -178,7 +177,22 @@ private:
     void enqueue(std::uint32_t point) {
         if ((state_[point] & (queued | marked)) != 0 || !t_.may_join(point)) return;
         state_[point] |= queued;
-        (favoured_.empty() || favoured_[point] != 0 ? queue_ : later_).push_back(point);
+        if (ranks_.empty())
+            queue_.push_back(point);
+        else
+            ranked_.push({ranks_[point], arrived_++, point});
+    }
+
+    std::uint32_t next() {
+        std::uint32_t point = none;
+        if (ranks_.empty()) {
+            point = queue_.front();
+            queue_.pop_front();
+        } else {
+            point = ranked_.top().point;
+            ranked_.pop();
+        }
+        return point;
     }
 
     void try_to_join(std::uint32_t point) {
@@ -213,8 +227,18 @@ private:
     LinkCache& links_;
     LinkTest test_;
     std::vector<std::uint8_t> state_;
-    std::span<const char> favoured_;
-    std::deque<std::uint32_t> queue_, later_;
+    struct Ranked {
+        float rank;
+        std::uint64_t arrived;
+        std::uint32_t point;
+        bool operator<(const Ranked& o) const {  // the lowest on top
+            return rank != o.rank ? rank > o.rank : arrived > o.arrived;
+        }
+    };
+    std::span<const float> ranks_;
+    std::deque<std::uint32_t> queue_;
+    std::priority_queue<Ranked> ranked_;  ///< instead, where there are ranks
+    std::uint64_t arrived_ = 0;
     Growth growth_;
 };
 
@@ -230,10 +254,10 @@ Growth grow(const Triangulation& triangulation) {
     return grow(triangulation, links);
 }
 
-Growth grow(const Triangulation& triangulation, std::span<const char> favoured) {
+Growth grow(const Triangulation& triangulation, std::span<const float> ranks) {
     LinkCache links;
     links.begin_round(triangulation);
-    return Grower(triangulation, links, favoured).run();
+    return Grower(triangulation, links, ranks).run();
 }
 
 Growth grow_watershed(const Triangulation& triangulation, std::span<const double> sizes) {

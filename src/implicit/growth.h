@@ -51,8 +51,9 @@ private:
 Growth grow(const Triangulation& triangulation);
 /// The same; `links` is kept for the triangulation that follows from this one.
 Growth grow(const Triangulation& triangulation, LinkCache& links);
-/// Points with a mark in `favoured` (per point) go first: where fronts meet and stop, it is elsewhere.
-Growth grow(const Triangulation& triangulation, std::span<const char> favoured);
+/// Of the points that may join, those with lower ranks (per point) go first: where fronts meet and stop, ranks are
+/// high.
+Growth grow(const Triangulation& triangulation, std::span<const float> ranks);
 
 /// The thesis's watershed (Part III, 1.7.1; Lemma 52): in the order of their sizes |f(p)|, ties by number, points join
 /// whose smaller neighbours of their sign have all joined, if they may: those that flow into no critical point.

@@ -133,14 +133,15 @@ private:
         return false;
     }
 
-    /// Of the leaves that the mesh crosses.
-    std::vector<char> points_along_mesh() {
-        std::vector<char> crossed_leaf(tree_.cells().size(), 0), result(triangulation_->point_count(), 0);
+    /// Ranks: points of the leaves that the mesh crosses go first.
+    std::vector<float> points_along_mesh() {
+        std::vector<char> crossed_leaf(tree_.cells().size(), 0);
+        std::vector<float> result(triangulation_->point_count(), 1);
         for (const std::uint32_t leaf : crossed(false)) crossed_leaf[leaf] = 1;
         for (std::size_t i = 0; i < triangulation_->active_leaves().size(); ++i) {
             if (!crossed_leaf[triangulation_->active_leaves()[i]]) continue;
             for (const auto& t : triangulation_->tetrahedra_of(i)) {
-                for (const std::uint32_t p : t) result[p] = 1;
+                for (const std::uint32_t p : t) result[p] = 0;
             }
         }
         return result;

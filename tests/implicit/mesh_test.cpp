@@ -11,6 +11,7 @@
 #include "core/parallel.h"
 #include "core/random.h"
 #include "implicit/marching_cubes.h"
+#include "implicit/simplify.h"
 #include "implicit/topology.h"
 
 namespace certa {
@@ -372,6 +373,38 @@ TEST(Engines, RefuseWhatTheyCannotDo) {
                                                {.max_cells = 20000, .engine = ImplicitEngine::plantinga_vegter});
     EXPECT_STREQ(name_of(plane.verdict), "undecided");
     EXPECT_FALSE(plane.obstacles.empty());
+}
+
+/// Triangles of a surface simplified to an error, within W and without it.
+std::array<std::size_t, 2> simplified(const char* text, double half, double error) {
+    const Expression f = parse_expression(text);
+    const Point3 low{-1.015 * half, -1.015 * half, -1.015 * half}, high{0.985 * half, 0.985 * half, 0.985 * half};
+    ImplicitResult raw = mesh_implicit(f, low, high);
+    implicit::Surface start;
+    start.mesh = std::move(raw.mesh);
+    start.component_of_triangle = std::move(raw.triangle_components);
+    const ImplicitResult within = mesh_implicit(f, low, high, {.certificate = true, .error = error});
+    EXPECT_TRUE(check_implicit(within.mesh, text, within.certificate).ok()) << text;
+    return {within.mesh.triangles.size(),
+            implicit::simplify(start, nullptr, expression::Tape(f), {error}, {}).mesh.triangles.size()};
+}
+
+// What keeps W from being as thick as the mesh may be far: here the frontier, critical leaves (long), both signs
+// (long).
+TEST(Simplified, CertaintyTakesFewTriangles) {
+    const auto [within, without] = simplified("(x^2+y^2+z^2+0.84)^2-4*(x^2+y^2)", 2, 0.02);
+    EXPECT_LE(static_cast<double>(within), 1.1 * static_cast<double>(without));
+}
+
+TEST(SimplifiedLong, CertaintyTakesFewTriangles) {
+    for (const double error : {0.1, 0.05, 0.02}) {
+        const auto [in_torus, torus_alone] = simplified("(x^2+y^2+z^2+0.84)^2-4*(x^2+y^2)", 2, error);
+        EXPECT_LE(static_cast<double>(in_torus), 1.2 * static_cast<double>(torus_alone)) << error;
+        const auto [in_cube, cube_alone] = simplified(tangle, 3, error);
+        EXPECT_LE(static_cast<double>(in_cube), 1.2 * static_cast<double>(cube_alone)) << error;
+        const auto [in_bretzel, bretzel_alone] = simplified("(x^2*(1-x^2)-y^2)^2+z^2-0.01", 1.6, error);
+        EXPECT_LE(static_cast<double>(in_bretzel), 1.2 * static_cast<double>(bretzel_alone)) << error;
+    }
 }
 
 /// Components and genera as dense sampling sees them; nothing where two resolutions disagree.
