@@ -3,7 +3,7 @@
 // series of the function at one double in interval arithmetic and adds its remainder, so its enclosure is proved by
 // construction. The functions are monotone (or even): the values at the ends of an interval enclose all in between.
 //
-// Plan: series evaluation; exp; log; hyperbolic functions; powers.
+// Plan: series with their rests; exp; log; hyperbolic functions; powers.
 #include <array>
 #include <cmath>
 
@@ -25,29 +25,45 @@ Interval scale(const Interval& value, int k) {
     return exact ? Interval{low, high} : detail::outward(low, high);
 }
 
-/// exp at a finite double. x = k ln 2 + r with |r| <= 0.35; the series is cut after r^13, the rest is at most
-/// |r|^14 / 14! * (1 + |r|/15 + ...) <= |r|^14 / 14! * 1.03.
+}  // namespace
+
+/// Cut after r^13, the rest is at most |r|^14 / 14! * (1 + |r|/15 + ...) <= |r|^14 / 14! * 1.25.
+Interval exp_series(const Interval& r) {
+    return horner(r, exponential_coefficients(), 13) + remainder_of_series(r, 14, 1.25);
+}
+
+/// Terms 2 s^(2i+1) / (2i+1), i <= 10; the rest is at most |s|^23 * 2/23 / (1 - s^2).
+Interval twice_atanh_series(const Interval& s) {
+    const Interval t = sqr(s);
+    Interval sum = Interval(2.0) / Interval(21.0);
+    for (int i = 9; i >= 0; --i) sum = sum * t + Interval(2.0) / Interval(2.0 * i + 1.0);
+    // The rest, divided by s: 2/23 t^11 / (1 - t), below 0.116 t^11.
+    const double rest = above(0.116 * power(t, 11).hi);
+    return s * (sum + Interval(0.0, rest));
+}
+
+/// Cut after x^15, the rest is at most |x|^17 / 17! * (1 + x^2 / (18 19) + ...) <= |x|^17 / 17! * 1.25.
+Interval sinh_series(double x) {
+    const Interval t = sqr(Interval(x));
+    Interval sum = inverse_factorial(15);
+    for (int i = 13; i >= 1; i -= 2) sum = sum * t + inverse_factorial(i);
+    const Interval rest = remainder_of_series(Interval(x), 16, 1.25 / 17);  // divided by x
+    return Interval(x) * (sum + rest);
+}
+
+namespace {
+
+/// exp at a finite double. x = k ln 2 + r with |r| <= 0.35.
 Interval exp_at(double x) {
     if (x > 709.8) return {largest, infinity};  // exp(709.8) > 2^1024
     if (x < -745.2) return {0.0, 0x1p-1074};    // exp(-745.2) < 2^-1075
     const double k = std::nearbyint(x * 0x1.71547652b82fep0);
     const Interval r = k == 0 ? Interval(x) : (Interval(x) - Interval(k * ln2_high)) - Interval(k) * ln2_low;
-    const Interval rest = remainder_of_series(r, 14, 1.03);
-    const Interval sum = horner(r, exponential_coefficients(), 13) + rest;
-    return scale(sum, static_cast<int>(k));
+    return scale(exp_series(r), static_cast<int>(k));
 }
 
-/// 2 atanh(s) for |s| <= 0.172: sum of 2 s^(2i+1) / (2i+1), i <= 10; the rest is at most |s|^23 * 2/23 / (1 - s^2).
-Interval twice_atanh(const Interval& s) {
-    const Interval t = sqr(s);
-    Interval sum = Interval(2.0) / Interval(21.0);
-    for (int i = 9; i >= 0; --i) sum = sum * t + Interval(2.0) / Interval(2.0 * i + 1.0);
-    // The rest, divided by s: 2/23 t^11 / (1 - t), below 0.09 t^11.
-    const double rest = above(0.09 * power(t, 11).hi);
-    return s * (sum + Interval(0.0, rest));
-}
-
-/// log at a positive finite double: x = m 2^k with m in [sqrt(1/2), sqrt 2], log m = 2 atanh((m - 1) / (m + 1)).
+/// log at a positive finite double: x = m 2^k with m in [sqrt(1/2), sqrt 2], log m = 2 atanh((m - 1) / (m + 1)), at
+/// most at 0.172.
 Interval log_at(double x) {
     int k = 0;
     double m = std::frexp(x, &k);
@@ -56,22 +72,13 @@ Interval log_at(double x) {
         --k;
     }
     const Interval s = Interval(m - 1.0) / (Interval(m) + Interval(1.0));  // m - 1 is exact (Sterbenz)
-    const Interval log_m = twice_atanh(s);
+    const Interval log_m = twice_atanh_series(s);
     if (k == 0) return log_m;
     return Interval(k * ln2_high) + (Interval(k) * ln2_low + log_m);
 }
 
-/// sinh at |x| <= 1/2 by its series up to x^15; the rest is at most |x|^17 / 17! * 1.01.
-Interval small_sinh_at(double x) {
-    const Interval t = sqr(Interval(x));
-    Interval sum = inverse_factorial(15);
-    for (int i = 13; i >= 1; i -= 2) sum = sum * t + inverse_factorial(i);
-    const Interval rest = remainder_of_series(Interval(x), 16, 1.01 / 17);  // divided by x
-    return Interval(x) * (sum + rest);
-}
-
 Interval sinh_at(double x) {
-    if (std::fabs(x) <= 0.5) return small_sinh_at(x);
+    if (std::fabs(x) <= 0.5) return sinh_series(x);
     const Interval e = exp_at(std::fabs(x));
     const Interval value = Interval(0.5) * (e - Interval(1.0) / e);
     return x < 0 ? -value : value;
@@ -86,7 +93,7 @@ Interval cosh_at(double x) {
 Interval tanh_at(double x) {
     Interval value;
     if (std::fabs(x) <= 0.5) {
-        value = small_sinh_at(x) / cosh_at(x);
+        value = sinh_series(x) / cosh_at(x);
     } else if (std::fabs(x) > 40) {
         value = {1 - 0x1p-53, 1.0};  // 1 - tanh 40 < 4e-35
     } else {

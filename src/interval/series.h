@@ -45,4 +45,20 @@ inline Interval remainder_of_series(const Interval& r, int n, double factor) {
     return {-bound.hi, bound.hi};
 }
 
+// The series that the functions are computed with, rests included. Each encloses its function as far as is said, which
+// is further out than it is used: where they are used their rests are below the outward steps, and no test could tell
+// whether they are there.
+
+/// exp r for |r| <= 3.
+Interval exp_series(const Interval& r);
+/// sinh x at |x| <= 8.
+Interval sinh_series(double x);
+/// 2 atanh s for |s| <= 1/2.
+Interval twice_atanh_series(const Interval& s);
+/// sin r, cos r for any r.
+Interval sin_series(const Interval& r);
+Interval cos_series(const Interval& r);
+/// atan u for |u| <= 1.
+Interval atan_series(const Interval& u);
+
 }  // namespace certa::interval

@@ -20,7 +20,9 @@ constexpr Interval half_pi_third{0x1.3198a2e037073p-69, 0x1.3198a2e037074p-69};
 constexpr Interval half_pi{0x1.921fb54442d18p0, 0x1.921fb54442d19p0};
 constexpr double reducible = 0x1p20;
 
-/// sin r for |r| <= 0.8: r^17 is the last term, the rest is at most |r|^19 / 19! (Lagrange).
+}  // namespace
+
+/// Used for |r| <= 0.8: r^17 is the last term, the rest is at most |r|^19 / 19! (Lagrange).
 Interval sin_series(const Interval& r) {
     const Interval t = -sqr(r);
     Interval sum = inverse_factorial(17);
@@ -28,13 +30,25 @@ Interval sin_series(const Interval& r) {
     return r * sum + remainder_of_series(r, 19, 1.0);
 }
 
-/// cos r for |r| <= 0.8: r^18 is the last term, the rest is at most |r|^20 / 20!.
+/// Used for |r| <= 0.8: r^18 is the last term, the rest is at most |r|^20 / 20!.
 Interval cos_series(const Interval& r) {
     const Interval t = -sqr(r);
     Interval sum = inverse_factorial(18);
     for (int i = 16; i >= 0; i -= 2) sum = sum * t + inverse_factorial(i);
     return sum + remainder_of_series(r, 20, 1.0);
 }
+
+/// Cut after u^23, the rest is at most |u|^25 / 25 (alternating).
+Interval atan_series(const Interval& u) {
+    const Interval t = -sqr(u);
+    Interval sum = Interval(1.0) / Interval(23.0);
+    for (int i = 21; i >= 1; i -= 2) sum = sum * t + Interval(1.0) / Interval(i);
+    // Divided by u, the rest is at most u^24 / 25, of either sign.
+    const double rest = above(0.04001 * power(t, 12).hi);
+    return u * (sum + Interval(-rest, rest));
+}
+
+namespace {
 
 struct SineCosine {
     Interval sine, cosine;
@@ -75,17 +89,11 @@ Interval wave(const Interval& a, const Interval& first, const Interval& last, co
     return {low, high};
 }
 
-/// atan at |x| <= 1: halved twice by atan x = 2 atan(x / (1 + sqrt(1 + x^2))), then |u| < 0.2; the series is cut after
-/// u^23, the rest is at most |u|^25 / 25 (alternating).
+/// atan at |x| <= 1: halved twice by atan x = 2 atan(x / (1 + sqrt(1 + x^2))), then |u| < 0.2.
 Interval atan_at_most_1(const Interval& x) {
     Interval u = x;
     for (int i = 0; i < 2; ++i) u = u / (Interval(1.0) + sqrt(Interval(1.0) + sqr(u)));
-    const Interval t = -sqr(u);
-    Interval sum = Interval(1.0) / Interval(23.0);
-    for (int i = 21; i >= 1; i -= 2) sum = sum * t + Interval(1.0) / Interval(i);
-    // Divided by u, the rest is at most u^24 / 25, of either sign.
-    const double rest = above(0.04001 * power(t, 12).hi);
-    return Interval(4.0) * (u * (sum + Interval(-rest, rest)));
+    return Interval(4.0) * atan_series(u);
 }
 
 Interval atan_at(double x) {

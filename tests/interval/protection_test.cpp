@@ -1,6 +1,6 @@
 // One test per protection of interval arithmetic; each fails when its protection is taken away (tried by hand).
 //   the outward step      StepsOutward, AccumulatesOutward
-//   the rest of a series  RestsOfSeriesAreBounded (in sums the outward steps of their terms hide it)
+//   the rest of a series  SeriesHaveTheirRests (where they are used, outward steps hide it)
 //   no mode switching     IsIndependentOfOptimisation (constant folding and the processor agree)
 //   rounding mode         RefusesOtherRoundingModes
 //   denormals             RefusesFlushedDenormals
@@ -48,41 +48,38 @@ TEST(Protection, AccumulatesOutward) {
     EXPECT_GT(width(Interval(1.0) / Interval(3.0)), 0.0);
 }
 
-/// |f(r) - terms| in 400 bits, the terms being r^i / i! for i = first, first + step, ... below n with signs that
-/// alternate or not.
-double rest_of(int (*function)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t), double r, int first, int step, int n,
-               bool alternate) {
-    mpfr_t x, sum, term;
-    mpfr_inits2(400, x, sum, term, static_cast<mpfr_ptr>(nullptr));
-    mpfr_set_d(x, r, MPFR_RNDN);
-    function(sum, x, MPFR_RNDN);
-    for (int i = first, k = 0; i < n; i += step, ++k) {
-        mpfr_pow_si(term, x, i, MPFR_RNDN);
-        for (int j = 2; j <= i; ++j) mpfr_div_si(term, term, j, MPFR_RNDN);
-        (alternate && k % 2 == 1 ? mpfr_add : mpfr_sub)(sum, sum, term, MPFR_RNDN);
-    }
-    const double rest = std::fabs(mpfr_get_d(sum, MPFR_RNDA));
-    mpfr_clears(x, sum, term, static_cast<mpfr_ptr>(nullptr));
-    return rest;
-}
+struct Series {
+    const char* name;
+    Interval (*enclosed)(const Interval&);
+    int (*exact)(mpfr_ptr, mpfr_srcptr, mpfr_rnd_t);
+    double furthest, factor;  ///< of the exact function
+};
 
-// As elementary.cpp and trigonometric.cpp cut their series: below r^14 at |r| <= 0.35, below r^17 at 1/2, below r^19
-// and r^20 at 0.8.
-TEST(Protection, RestsOfSeriesAreBounded) {
-    for (int i = 1; i <= 200; ++i) {
-        const double t = i / 200.0;
-        for (const double sign : {-1.0, 1.0}) {
-            const double e = sign * 0.35 * t, h = sign * 0.5 * t, c = sign * 0.8 * t;
-            EXPECT_GE(remainder_of_series(Interval(e), 14, 1.03).hi, rest_of(mpfr_exp, e, 0, 1, 14, false)) << e;
-            EXPECT_GE(remainder_of_series(Interval(h), 16, 1.01 / 17).hi * std::fabs(h),
-                      rest_of(mpfr_sinh, h, 1, 2, 16, false))
-                << h;
-            EXPECT_GE(remainder_of_series(Interval(c), 19, 1.0).hi, rest_of(mpfr_sin, c, 1, 2, 19, true)) << c;
-            EXPECT_GE(remainder_of_series(Interval(c), 20, 1.0).hi, rest_of(mpfr_cos, c, 0, 2, 20, true)) << c;
+// Far out, where the terms alone, even with all their outward steps, miss the function.
+TEST(Protection, SeriesHaveTheirRests) {
+    const Series all[] = {
+        {"exp", exp_series, mpfr_exp, 3, 1},
+        {"sinh", [](const Interval& x) { return sinh_series(x.lo); }, mpfr_sinh, 4, 1},
+        {"2 atanh", twice_atanh_series, mpfr_atanh, 0.5, 2},
+        {"sin", sin_series, mpfr_sin, 4, 1},
+        {"cos", cos_series, mpfr_cos, 4, 1},
+        {"atan", atan_series, mpfr_atan, 1, 1},
+    };
+    mpfr_t x, value;
+    mpfr_inits2(400, x, value, static_cast<mpfr_ptr>(nullptr));
+    for (const Series& series : all) {
+        for (int i = -200; i <= 200; ++i) {
+            const double r = series.furthest * i / 200;
+            mpfr_set_d(x, r, MPFR_RNDN);
+            series.exact(value, x, MPFR_RNDN);
+            mpfr_mul_d(value, value, series.factor, MPFR_RNDN);
+            const Interval found = series.enclosed(Interval(r));
+            EXPECT_LE(mpfr_cmp_d(value, found.hi), 0) << series.name << " at " << r;
+            EXPECT_GE(mpfr_cmp_d(value, found.lo), 0) << series.name << " at " << r;
+            EXPECT_LE(width(found), 0.2) << series.name << " at " << r;
         }
     }
-    // Without the factor for the terms after the first one it would not do.
-    EXPECT_LT(remainder_of_series(Interval(0.35), 14, 1.0).hi, rest_of(mpfr_exp, 0.35, 0, 1, 14, false));
+    mpfr_clears(x, value, static_cast<mpfr_ptr>(nullptr));
 }
 
 // Computed by the compiler and by the processor, with operands that it can and cannot see.
