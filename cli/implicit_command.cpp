@@ -84,9 +84,11 @@ const char* advice(ImplicitObstacle::Reason reason) {
         case ImplicitObstacle::Reason::undefined:
             return "the function is not defined there, or cannot be shown to be; choose a --box where it is";
         case ImplicitObstacle::Reason::precision:
-            return "the cells have become as small as doubles or --max-depth allow";
+            return "the cells have become as small as doubles allow";
         case ImplicitObstacle::Reason::budget:
-            return "--max-cells, --time or the memory of this machine was reached; the boxes are where it would go on";
+            return "--max-cells, --max-depth, --time or the memory of this machine was reached; the boxes are where it "
+                   "would go "
+                   "on";
         default:
             return "interrupted";
     }

@@ -148,7 +148,7 @@ struct ImplicitObstacle {
         tangent_to_box,  ///< of a box that clips: the surface is tangent to a face or an edge of it, or meets a corner
         undefined,       ///< f cannot be shown to be defined there
         precision,       ///< the cell is as small as doubles allow
-        budget,          ///< max_cells, time_seconds or memory_bytes
+        budget,          ///< max_cells, max_depth, time_seconds or memory_bytes
         cancelled,       ///< by RunControl
     };
     Reason reason{};

@@ -156,7 +156,10 @@ private:
             if (separation.is_apart(grid_, box.low, high)) continue;
             if (box.depth == max_depth_) {
                 const bool defined = separation.is_defined(grid_.region(box.low, high));
-                return stop(defined ? Reason::singular : Reason::undefined, box.low, high);
+                return stop(max_depth_ < grid_.resolution() - 1 ? Reason::budget
+                            : defined                           ? Reason::singular
+                                                                : Reason::undefined,
+                            box.low, high);
             }
             if (count > budget_) return stop(Reason::budget, box.low, high);
             if (count % 256 == 0) {

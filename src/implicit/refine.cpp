@@ -212,7 +212,7 @@ public:
 
 private:
     std::optional<Obstacle> look_ahead(const std::vector<std::uint32_t>& open, int depth) {
-        if (depth >= limits_.max_depth) return Obstacle{reason_of(tree_, tree_.cell(open.front()), field_), open};
+        if (depth >= limits_.max_depth) return Obstacle{reason_at(tree_.cell(open.front())), open};
         if (depth >= 3 && !tree_.is_clipped()) {
             for (const std::uint32_t id : open) {
                 const Cell& cell = tree_.cell(id);
@@ -220,7 +220,7 @@ private:
                     continue;
                 // What is singular too is so in any box: that is said first.
                 const auto singular = stuck_cell(most_promising(open));
-                if (singular && reason_of(tree_, *singular, field_) == Reason::singular)
+                if (singular && reason_at(*singular) == Reason::singular)
                     return Obstacle{Reason::singular, {split_down_to(*singular)}};
                 return Obstacle{Reason::meets_box, {id}};
             }
@@ -229,9 +229,14 @@ private:
             const std::uint32_t id = most_promising(open);
             std::optional<Cell> found = stuck_cell(id);
             if (!found) found = probe(tree_, tree_.cell(id), limits_.max_depth, field_);
-            if (found) return Obstacle{reason_of(tree_, *found, field_), {split_down_to(*found)}};
+            if (found) return Obstacle{reason_at(*found), {split_down_to(*found)}};
         }
         return std::nullopt;
+    }
+
+    /// Why a cell at the last depth is open. If smaller ones were possible that is all there is to say.
+    Reason reason_at(const Cell& cell) {
+        return limits_.max_depth < tree_.max_depth() ? Reason::budget : reason_of(tree_, cell, field_);
     }
 
     /// A smallest cell that stays open, where an iteration from a leaf leads.
@@ -289,7 +294,8 @@ std::optional<Obstacle> split_all(Octree& tree, const std::vector<std::uint32_t>
     for (const std::uint32_t leaf : leaves) {
         if (tree.cell(leaf).depth >= limits.max_depth) deepest.push_back(leaf);
     }
-    if (!deepest.empty()) return Obstacle{Reason::precision, deepest};
+    if (!deepest.empty())
+        return Obstacle{limits.max_depth < tree.max_depth() ? Reason::budget : Reason::precision, deepest};
     for (const std::uint32_t leaf : leaves) {
         const std::uint32_t first = tree.split(leaf);
         for (std::uint32_t c = 0; c < 8; ++c) children.push_back(first + c);

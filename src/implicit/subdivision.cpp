@@ -93,7 +93,8 @@ private:
         for (const std::uint32_t leaf : leaves) {
             const Cell& cell = tree_.cell(leaf);
             if (cell.depth < max_depth_) continue;
-            return stop(!cell.known.defined                                     ? Reason::undefined
+            return stop(max_depth_ < tree_.max_depth()                          ? Reason::budget
+                        : !cell.known.defined                                   ? Reason::undefined
                         : cell.known.slope != 0 && tree_.touches_boundary(cell) ? Reason::meets_box
                                                                                 : Reason::singular,
                         {leaf});

@@ -191,7 +191,7 @@ INSTANTIATE_TEST_SUITE_P(
         Hopeless{"pole", "x^2+y^2+z^2-1+1e-9/x^2", -2.03, 1.97, Reason::undefined, {anywhere, 0, 0}}),
     [](const auto& info) { return std::string(info.param.name); });
 
-TEST(Undecided, ByBudgetDepthAndCancellation) {
+TEST(Undecided, ByBudgetDepthMemoryAndCancellation) {
     const char* tangle = "x^4-5*x^2+y^4-5*y^2+z^4-5*z^2+11.8";
     const ImplicitResult small = mesh(tangle, -3.03, 2.97, {.max_cells = 1000});
     EXPECT_EQ(small.verdict, ImplicitVerdict::undecided);
@@ -199,6 +199,20 @@ TEST(Undecided, ByBudgetDepthAndCancellation) {
     EXPECT_EQ(small.obstacles.front().reason, Reason::budget);
     const ImplicitResult shallow = mesh(tangle, -3.03, 2.97, {.max_depth = 3});
     EXPECT_EQ(shallow.verdict, ImplicitVerdict::undecided);
+    EXPECT_EQ(shallow.outcome, Outcome::over_budget);
+    EXPECT_EQ(shallow.obstacles.front().reason, Reason::budget) << "not that it meets the box, or is singular";
+    for (const std::uint64_t depth : {1, 2, 4, 5, 6, 7}) {
+        const ImplicitResult sphere = mesh("x^2+y^2+z^2-1", -2.03, 1.97, {.max_depth = depth});
+        if (sphere.verdict == ImplicitVerdict::undecided)
+            EXPECT_EQ(sphere.obstacles.front().reason, Reason::budget) << depth;
+    }
+    // The same surface with a quarter of the memory that it is estimated to take, and with enough.
+    const ImplicitResult tight = mesh(tangle, -3.03, 2.97, {.memory_bytes = 15'000'000});
+    EXPECT_EQ(tight.verdict, ImplicitVerdict::undecided);
+    EXPECT_EQ(tight.outcome, Outcome::over_budget);
+    EXPECT_EQ(tight.obstacles.front().reason, Reason::budget);
+    EXPECT_TRUE(tight.mesh.triangles.empty());
+    EXPECT_EQ(mesh(tangle, -3.03, 2.97, {.memory_bytes = 60'000'000}).verdict, ImplicitVerdict::certified);
     const std::atomic<bool> stop{true};
     RunControl control;
     control.cancel = &stop;
