@@ -68,7 +68,8 @@ public:
             } else {
                 triangulation.emplace(tree_, field_, signs_, watershed_);
             }
-            growth = watershed_ ? grow_watershed(*triangulation, sizes_of_values()) : grow(*triangulation, links);
+            growth =
+                watershed_ ? grow_watershed(*triangulation, sizes_of_values()) : grow(*triangulation, links, control_);
             Findings findings = check_conditions(tree_, *triangulation, growth, clusters, tape_, control_, proved_);
             if (control_.cancelled()) return stop({ImplicitObstacle::Reason::cancelled, {}});
             if (findings.offenders.empty()) {

@@ -8,6 +8,8 @@
 #include <deque>
 #include <queue>
 
+#include "core/parallel.h"
+
 namespace certa::implicit {
 
 std::uint32_t LinkTest::local(std::uint32_t point) {
@@ -83,48 +85,59 @@ bool LinkTest::close_rim(const Triangulation& triangulation, std::uint32_t point
     return true;
 }
 
-void LinkCache::begin_round(const Triangulation& triangulation) {
+void LinkCache::begin_round(const Triangulation& triangulation, const RunControl& control) {
     entries_.resize(triangulation.point_count());
+    std::vector<std::uint32_t> wanted;
     for (std::uint32_t point = 0; point < entries_.size(); ++point) {
         if (triangulation.is_changed(point)) entries_[point].built = false;
+        if (!entries_[point].built && triangulation.may_join(point) && triangulation.box_faces(point) == 0)
+            wanted.push_back(point);
     }
-}
-
-LinkCache::Link LinkCache::link_of(const Triangulation& triangulation, std::uint32_t point) {
-    Entry& entry = entries_[point];
-    if (!entry.built) {
-        entry.built = true;
-        entry.first = points_.size();
-        build(triangulation, point);
-        entry.count = static_cast<std::uint32_t>(points_.size() - entry.first);
+    constexpr std::size_t grain = 4096;
+    std::vector<Part> parts((wanted.size() + grain - 1) / grain);
+    core::parallel_for(parts.size(), 1, control, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+            for (std::size_t k = i * grain; k < std::min((i + 1) * grain, wanted.size()); ++k)
+                parts[i].add(triangulation, wanted[k]);
+        }
+    });
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+        std::size_t first = points_.size();
+        for (std::size_t k = 0; k < parts[i].counts.size(); ++k) {
+            entries_[wanted[i * grain + k]] = {first, parts[i].counts[k], true};
+            first += parts[i].counts[k];
+        }
+        points_.insert(points_.end(), parts[i].points.begin(), parts[i].points.end());
+        masks_.insert(masks_.end(), parts[i].masks.begin(), parts[i].masks.end());
+        parts[i] = {};
     }
-    return {points_.data() + entry.first, masks_.data() + entry.first, entry.count};
 }
 
 /// Links of more than 64 points are not kept.
-void LinkCache::build(const Triangulation& triangulation, std::uint32_t point) {
-    const std::size_t first = points_.size();
+void LinkCache::Part::add(const Triangulation& triangulation, std::uint32_t point) {
+    const std::size_t first = points.size();
     const auto place_of = [&](std::uint32_t p) {
         std::size_t place = first;
-        while (place < points_.size() && points_[place] != p) ++place;
-        if (place == points_.size()) points_.push_back(p);
+        while (place < points.size() && points[place] != p) ++place;
+        if (place == points.size()) points.push_back(p);
         return place - first;
     };
-    std::array<std::uint64_t, 64> masks{};
+    std::array<std::uint64_t, 64> found{};
     for (const std::uint32_t t : triangulation.around(point)) {
         std::array<std::size_t, 3> face{};
         std::size_t count = 0;
         for (const std::uint32_t p : triangulation.tetrahedra()[t]) {
             if (p != point) face[count++] = place_of(p);
         }
-        if (points_.size() - first > 64) {
-            points_.resize(first);
-            return;
+        if (points.size() - first > 64) {
+            points.resize(first);
+            break;
         }
         for (std::size_t i = 0; i < 3; ++i)
-            masks[face[i]] |= (std::uint64_t{1} << face[(i + 1) % 3]) | (std::uint64_t{1} << face[(i + 2) % 3]);
+            found[face[i]] |= (std::uint64_t{1} << face[(i + 1) % 3]) | (std::uint64_t{1} << face[(i + 2) % 3]);
     }
-    masks_.insert(masks_.end(), masks.begin(), masks.begin() + static_cast<std::ptrdiff_t>(points_.size() - first));
+    counts.push_back(static_cast<std::uint32_t>(points.size() - first));
+    masks.insert(masks.end(), found.begin(), found.begin() + static_cast<std::ptrdiff_t>(counts.back()));
 }
 
 namespace {
@@ -143,7 +156,7 @@ bool is_connected(std::uint64_t set, const std::uint64_t* masks) {
 
 class Grower {
 public:
-    Grower(const Triangulation& triangulation, LinkCache& links, std::span<const float> ranks = {})
+    Grower(const Triangulation& triangulation, const LinkCache& links, std::span<const float> ranks = {})
         : t_(triangulation),
           links_(links),
           test_(triangulation.point_count()),
@@ -197,7 +210,7 @@ private:
 
     void try_to_join(std::uint32_t point) {
         const LinkCache::Link link =
-            t_.box_faces(point) == 0 ? links_.link_of(t_, point) : LinkCache::Link{nullptr, nullptr, 0};
+            t_.box_faces(point) == 0 ? links_.link_of(point) : LinkCache::Link{nullptr, nullptr, 0};
         if (link.count == 0) {
             if (!test_.may_join(t_, growth_.marked, point)) return;
             mark(point, test_.link().data(), test_.link().size());
@@ -224,7 +237,7 @@ private:
     }
 
     const Triangulation& t_;
-    LinkCache& links_;
+    const LinkCache& links_;
     LinkTest test_;
     std::vector<std::uint8_t> state_;
     struct Ranked {
@@ -244,19 +257,19 @@ private:
 
 }  // namespace
 
-Growth grow(const Triangulation& triangulation, LinkCache& links) {
-    links.begin_round(triangulation);
+Growth grow(const Triangulation& triangulation, LinkCache& links, const RunControl& control) {
+    links.begin_round(triangulation, control);
     return Grower(triangulation, links).run();
 }
 
 Growth grow(const Triangulation& triangulation) {
     LinkCache links;
-    return grow(triangulation, links);
+    return grow(triangulation, links, {});
 }
 
-Growth grow(const Triangulation& triangulation, std::span<const float> ranks) {
+Growth grow(const Triangulation& triangulation, std::span<const float> ranks, const RunControl& control) {
     LinkCache links;
-    links.begin_round(triangulation);
+    links.begin_round(triangulation, control);
     return Grower(triangulation, links, ranks).run();
 }
 

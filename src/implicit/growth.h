@@ -1,5 +1,7 @@
 #pragma once
 // The growth of W: which points of T join it, in which order.
+#include <certa/run_control.h>
+
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -14,7 +16,7 @@ struct Growth {
     std::vector<std::uint32_t> order;  ///< marked points in the order of marking: the certificate of the collapse
 };
 
-/// The links of points as bit masks, kept between rounds of refinement where stars do not change.
+/// The links of points that may join, as bit masks, kept between rounds of refinement where stars do not change.
 class LinkCache {
 public:
     struct Link {
@@ -22,10 +24,13 @@ public:
         const std::uint64_t* masks;  ///< per point of the link, a bit for each neighbour in the link
         std::size_t count;           ///< 0: more than 64 points, not kept
     };
-    /// The link of a point that may join; valid until the next call.
-    Link link_of(const Triangulation& triangulation, std::uint32_t point);
-    /// Forgets the links that the triangulation says may have changed; to be called for each triangulation.
-    void begin_round(const Triangulation& triangulation);
+    /// To be called for each triangulation: makes, in parallel, the links that are new or may have changed.
+    void begin_round(const Triangulation& triangulation, const RunControl& control);
+    /// The link of a point that may join and is on no face of a box that clips.
+    Link link_of(std::uint32_t point) const {
+        const Entry& entry = entries_[point];
+        return {points_.data() + entry.first, masks_.data() + entry.first, entry.count};
+    }
 
 private:
     struct Entry {
@@ -33,7 +38,12 @@ private:
         std::uint32_t count = 0;
         bool built = false;
     };
-    void build(const Triangulation& triangulation, std::uint32_t point);
+    /// Links that one thread made, one after the other.
+    struct Part {
+        std::vector<std::uint32_t> points, counts;
+        std::vector<std::uint64_t> masks;
+        void add(const Triangulation& triangulation, std::uint32_t point);
+    };
     std::vector<Entry> entries_;
     std::vector<std::uint32_t> points_;
     std::vector<std::uint64_t> masks_;
@@ -48,12 +58,12 @@ private:
 ///             unmarked point over its rim, and the rim must change kind exactly twice, on an edge of the box exactly
 ///             once in each of the two faces. Each step adds a cone over a contractible set, so W collapses to the
 ///             surface of sign changes (Lemma 51), once every tetrahedron with both signs has all its points marked.
+/// `links` is kept for the triangulation that follows from this one.
+Growth grow(const Triangulation& triangulation, LinkCache& links, const RunControl& control);
 Growth grow(const Triangulation& triangulation);
-/// The same; `links` is kept for the triangulation that follows from this one.
-Growth grow(const Triangulation& triangulation, LinkCache& links);
 /// Of the points that may join, those with lower ranks (per point) go first: where fronts meet and stop, ranks are
 /// high.
-Growth grow(const Triangulation& triangulation, std::span<const float> ranks);
+Growth grow(const Triangulation& triangulation, std::span<const float> ranks, const RunControl& control);
 
 /// The thesis's watershed (Part III, 1.7.1; Lemma 52): in the order of their sizes |f(p)|, ties by number, points join
 /// whose smaller neighbours of their sign have all joined, if they may: those that flow into no critical point.

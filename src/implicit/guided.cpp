@@ -125,7 +125,7 @@ private:
                 if (cell.known.slope != 0 && !tree_.touches_boundary(cell)) cell.known.sign = 0;
             }
             triangulation_.emplace(tree_, field_, signs_);
-            growth_ = grow(*triangulation_, points_along_mesh());
+            growth_ = grow(*triangulation_, points_along_mesh(), control_);
             findings_ = check_conditions(tree_, *triangulation_, growth_, find_clusters(tree_), tape_, control_);
             if (findings_.offenders.empty()) return true;
             if (split_all(tree_, findings_.offenders, tape_, limits_, control_)) return false;

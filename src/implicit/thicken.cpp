@@ -28,7 +28,7 @@ public:
             from_.control.report("certify", 0.99);
             forget();
             Triangulation triangulation(tree_, field_, from_.signs);
-            Growth growth = grow(triangulation, distances(triangulation));
+            Growth growth = grow(triangulation, distances(triangulation), from_.control);
             Findings findings =
                 check_conditions(tree_, triangulation, growth, clusters_, from_.tape, from_.control, proved_);
             if (from_.control.cancelled()) break;
