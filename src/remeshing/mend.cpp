@@ -76,8 +76,24 @@ public:
           patcher_(layout) {
         in_set_.assign(patcher_.face_count(), 0);
         is_cut_.assign(patcher_.face_count(), 0);
+        for (std::size_t q = 0; q < base_.polygon_count(); ++q) {
+            const auto ring = base_.polygon(q);
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+                sides_.push_back({std::min(a, b), std::max(a, b)});
+            }
+        }
+        std::sort(sides_.begin(), sides_.end());
+        for (const Index f : layout.open) {
+            in_set_[f] = 1;
+            open_in_patch_[patch_beside(layout.graph, layout.network, layout.faces[f].front())].push_back(f);
+        }
     }
 
+    void fill() {
+        assemble();
+        out_ = std::move(result_);
+    }
     MendingReport run() {
         MendingReport report;
         for (;; ++report.rounds) {
@@ -119,14 +135,19 @@ private:
                 region.faces.assign(1, seed);
                 const auto number = static_cast<Index>(regions_.size());
                 region_of_[seed] = number;
+                const auto take = [&](Index g) {
+                    if (g == no_index || in_set_[g] == 0 || region_of_[g] != no_index) return;
+                    region_of_[g] = number;
+                    region.faces.push_back(g);
+                };
                 for (std::size_t at = 0; at < region.faces.size(); ++at) {
                     const Index f = region.faces[at];
-                    for (const Index h : layout_.faces[f])
-                        if (const Index g = patcher_.face_beside(h ^ 1U);
-                            g != no_index && in_set_[g] != 0 && region_of_[g] == no_index) {
-                            region_of_[g] = number;
-                            region.faces.push_back(g);
-                        }
+                    for (const Index h : layout_.faces[f]) take(patcher_.face_beside(h ^ 1U));
+                    if (!std::binary_search(layout_.open.begin(), layout_.open.end(), f)) continue;
+                    // Cycles in one patch may be the rims of one part of the surface.
+                    for (const Index g :
+                         open_in_patch_.at(patch_beside(layout_.graph, layout_.network, layout_.faces[f].front())))
+                        take(g);
                 }
                 std::sort(region.faces.begin(), region.faces.end());
                 region.is_whole = patcher_.is_whole(region.faces);
@@ -163,6 +184,8 @@ private:
         rule.tolerance = rule_.tolerance;
         rule.side_tolerance = rule_.side_tolerance;
         rule.side_share = 0.1;
+        rule.side_reach = rule_.crease_reach;
+        rule.joined = sides_;
         rule.is_fixed.assign(patch.outer.size() + patch.inner.size(), 1);
         for (std::size_t i = 0; i < patch.inner.size(); ++i) {
             const RegionVertex& v = patch.inner[i];
@@ -242,7 +265,7 @@ private:
         const Damage damage = find_damage(judge_, result_, control_);
         report.split_quads = damage.split;
         std::vector<Index> broken = damage.polygons;
-        if (!regions_.empty()) add_repeated_sides(broken);
+        add_repeated_sides(broken);
         if (rule_.reach > 0.0) {
             add_missed_creases(broken, 0.9 * rule_.reach);
         } else if (broken.empty() && add_missed_creases(broken, huge) > 0.9 * reach() && !control_.cancelled()) {
@@ -418,6 +441,8 @@ private:
 
     std::vector<std::uint8_t> in_set_;  ///< per face of the graph: the input takes its place
     std::vector<std::uint8_t> is_cut_;  ///< likewise: triangles do
+    std::map<Index, std::vector<Index>> open_in_patch_;
+    std::vector<std::array<Index, 2>> sides_;  ///< of all polygons, the lower number first, sorted
     std::vector<Ball> kept_;
     std::vector<Region> regions_;
     std::vector<Index> region_of_;  ///< per face
@@ -430,6 +455,11 @@ private:
 MendingReport mend(const Layout& layout, const Judge& judge, const MendingRule& rule, CoarseMesh& mesh,
                    const RunControl& control) {
     return Mender(layout, judge, rule, mesh, control).run();
+}
+
+void fill_open_faces(const Layout& layout, const Judge& judge, const MendingRule& rule, CoarseMesh& mesh,
+                     const RunControl& control) {
+    if (!layout.open.empty()) Mender(layout, judge, rule, mesh, control).fill();
 }
 
 CoarseMesh thin_input(const WorkMesh& mesh, const Judge& judge, double tolerance, std::size_t vertices,

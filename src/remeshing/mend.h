@@ -8,6 +8,7 @@ namespace certa::remeshing {
 struct MendingRule {
     double tolerance = 0.0;       ///< by how much triangles of the input may be thinned out, in its unit
     double side_tolerance = 0.0;  ///< the same beside the polygons around
+    double crease_reach = 0.0;    ///< how far a side may be from the crease that it is; polygons around are so anyway
     double error = 0.0;           ///< polygons farther than this are broken, too; 0: any distance will do
     double reach = 0.0;           ///< how far a minor crease may be from the result; 0: as far as anything is
     bool all_triangles = false;   ///< neighbours that get more corners become triangles, else also quads
@@ -27,6 +28,10 @@ struct MendingReport {
 /// Guarantee: topology as before; what is not listed in `left` is free of folds and contacts. Deterministic.
 MendingReport mend(const Layout& layout, const Judge& judge, const MendingRule& rule, CoarseMesh& mesh,
                    const RunControl& control);
+
+/// Puts thinned-out triangles of the input in place of the layout's open faces. Vertices keep their numbers.
+void fill_open_faces(const Layout& layout, const Judge& judge, const MendingRule& rule, CoarseMesh& mesh,
+                     const RunControl& control);
 
 /// The input, thinned out: what is left where there is no network at all. `vertices`: about so many, 0 for as few as
 /// the tolerance allows.

@@ -28,13 +28,12 @@ std::vector<std::int64_t> characteristics(const WorkMesh& mesh) {
     return chi;
 }
 
-/// The patch to the left of a half-edge of the graph.
-Index patch_of(const Graph& graph, const Network& network, Index h) {
+}  // namespace
+
+Index patch_beside(const Graph& graph, const Network& network, Index h) {
     const Index face = triangle_beside(graph, network, h);
     return face == no_index ? no_index : network.mesh().patches[face];
 }
-
-}  // namespace
 
 Index triangle_beside(const Graph& graph, const Network& network, Index h) {
     const WorkMesh& mesh = network.mesh();
@@ -58,11 +57,11 @@ Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<s
     for (const GraphNode& node : graph.nodes)
         if (!node.arms.empty() && node.curve == no_index) --rest[mesh.patches[node.place.face]];
     for (Index e = 0; e < graph.edges.size(); ++e)
-        if (graph.edges[e].alive() && graph.edges[e].line != no_index) ++rest[patch_of(graph, network, 2 * e)];
+        if (graph.edges[e].alive() && graph.edges[e].line != no_index) ++rest[patch_beside(graph, network, 2 * e)];
     std::vector<Index> last_seen(graph.nodes.size(), no_index);
     Flaws flaws;
     for (Index f = 0; f < faces.size(); ++f) {
-        const Index patch = patch_of(graph, network, faces[f].front());
+        const Index patch = patch_beside(graph, network, faces[f].front());
         if (patch != no_index) --rest[patch], met[patch] = true;
         bool pinched = faces[f].size() < 3;
         for (const Index h : faces[f]) {
@@ -70,16 +69,15 @@ Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<s
             pinched = pinched || last_seen[n] == f;
             last_seen[n] = f;
         }
-        if (pinched)
-            for (const Index h : faces[f]) flaws.nodes.push_back(graph.tail(h));
+        if (pinched) flaws.faces.push_back(f);
     }
     for (Index p = 0; p < mesh.patch_count; ++p)
         if (rest[p] != 0 || !met[p]) flaws.patches.push_back(p);
     return flaws;
 }
 
-CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index>>& faces, PolygonCounts& counts,
-                         std::vector<Index>& nodes) {
+CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index>>& faces, std::span<const Index> open,
+                         PolygonCounts& counts, std::vector<Index>& nodes) {
     CoarseMesh coarse;
     std::vector<Index> numbers(graph.nodes.size(), no_index);
     for (Index n = 0; n < graph.nodes.size(); ++n) {
@@ -90,6 +88,7 @@ CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index
     }
     std::vector<Index> ring;
     for (std::size_t f = 0; f < faces.size(); ++f) {
+        if (std::binary_search(open.begin(), open.end(), f)) continue;
         ring.clear();
         std::size_t corners = 0;
         for (const Index h : faces[f]) {

@@ -108,7 +108,11 @@ std::optional<RegionPatch> RegionPatcher::make(const std::vector<Index>& faces) 
     std::sort(starts.begin(), starts.end());
     if (std::adjacent_find(starts.begin(), starts.end()) != starts.end()) return std::nullopt;  // touches itself
     std::optional<RegionPatch> patch = cut_surface(layout_.network, layout_.graph, rim, {}, vertices_, is_minor_);
-    if (patch && characteristic_of(*patch) != characteristic(faces)) return std::nullopt;
+    // Cycles around what is no disk do not tell its topology; the cut itself keeps it.
+    const bool is_told = std::none_of(faces.begin(), faces.end(), [&](Index f) {
+        return std::binary_search(layout_.open.begin(), layout_.open.end(), f);
+    });
+    if (patch && is_told && characteristic_of(*patch) != characteristic(faces)) return std::nullopt;
     return patch;
 }
 

@@ -12,6 +12,7 @@ struct Layout {
     const Graph& graph;
     const std::vector<std::vector<Index>>& faces;
     const std::vector<Index>& nodes;  ///< of the graph, per vertex of the polygons; vertices beyond have none
+    const std::vector<Index>& open;   ///< faces that are no disks or meet themselves, sorted: never polygons
 };
 
 struct RegionVertex {

@@ -60,6 +60,9 @@ void check_options(const RemeshOptions& options) {
     if (options.max_degree != 0 && options.max_degree < 3) refuse_option("max_degree must be 3 at least, or 0");
 }
 
+/// How far straight sides may be from creases, in epsilons of the network.
+constexpr double crease_share = 0.5;
+
 /// One network and what came of it.
 struct Draft {
     double error = 0.0;
@@ -67,9 +70,12 @@ struct Draft {
     Graph graph;
     std::vector<std::vector<Index>> faces;
     std::vector<Index> nodes;  ///< of the graph, per vertex of the polygons
+    std::vector<Index> open;   ///< faces that are no polygons, but have the input's triangles
     CoarseMesh polygons;
     PolygonCounts counts;
     std::vector<Point3> flaws;  ///< places that no refinement has mended
+
+    Layout layout() const { return {network, graph, faces, nodes, open}; }
 };
 
 class Remesher {
@@ -92,7 +98,8 @@ private:
     SpacingRule rule_of(double error) const;
     double start_error(double count = 0.0);
     Draft draft(double error);
-    void refine(const Flaws& flaws, const Graph& graph, const Spacing& spacing);
+    std::vector<Index> open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const;
+    void refine(const Flaws& flaws, const Draft& draft, const Spacing& spacing);
     std::vector<Index> crowded_vertices(const CoarseMesh& mesh) const;
     CoarseMesh fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const;
     double count_of(const Draft& draft) const;
@@ -121,6 +128,7 @@ private:
         return options_.error ? options_.error->resolve(mesh_.diagonal) : 2e-3 * mesh_.diagonal;
     }
     bool finish();
+    MendingRule mending_rule(double error) const;
     CoarseMesh mended(CoarseMesh mesh, double error);
     void judge_input(CoarseMesh& mesh, Judge& judge);
     void give_input(double tolerance);
@@ -144,7 +152,8 @@ private:
     std::vector<double> patch_caps_;  ///< per patch, of the last refinement
     TraceRule trace_rule_;
     double balance_ = 1.0;  ///< see SpacingRule
-    CoarseMesh placed_;     ///< what `finish` has made
+    CoarseMesh placed_;     ///< what `finish` has made, but for open faces ...
+    CoarseMesh filled_;     ///< ... and with them
     std::optional<Draft> best_;
 };
 
@@ -189,7 +198,7 @@ bool Remesher::prepare() {
 }
 
 /// Lines closer together where faces are no polygons: all over a patch, or around nodes.
-void Remesher::refine(const Flaws& flaws, const Graph& graph, const Spacing& spacing) {
+void Remesher::refine(const Flaws& flaws, const Draft& draft, const Spacing& spacing) {
     caps_.resize(mesh_.wedge_count(), 0.0);
     patch_caps_.resize(mesh_.patch_count, 0.0);
     std::vector<bool> flawed(mesh_.patch_count, false);
@@ -214,13 +223,14 @@ void Remesher::refine(const Flaws& flaws, const Graph& graph, const Spacing& spa
         const Index p = mesh_.patches[mesh_.wedge_first[w] / 3];
         if (flawed[p]) lower(w, patch_caps_[p]);
     }
-    for (const Index n : flaws.nodes) {
-        const Index f = graph.nodes[n].place.face;
-        for (Index c = 3 * f; c < 3 * f + 3; ++c) {
-            const Index w = mesh_.wedges[c];
-            lower(w, 0.6 * std::min(spacing.at[0][w], spacing.at[1][w]));
+    for (const Index flawed_face : flaws.faces)
+        for (const Index h : draft.faces[flawed_face]) {
+            const Index f = draft.graph.nodes[draft.graph.tail(h)].place.face;
+            for (Index c = 3 * f; c < 3 * f + 3; ++c) {
+                const Index w = mesh_.wedges[c];
+                lower(w, 0.6 * std::min(spacing.at[0][w], spacing.at[1][w]));
+            }
         }
-    }
 }
 
 /// Edges of the mesh as it will be written that more than two polygons share, or one twice: their ends.
@@ -264,46 +274,59 @@ CoarseMesh Remesher::fan_out(const CoarseMesh& mesh, const std::vector<Index>& c
     return out;
 }
 
+/// Faces that will not be polygons but triangles of the input: in flat patches, which no line crosses, what is no disk;
+/// with `all`, whatever is none. They are no flaws any more.
+std::vector<Index> Remesher::open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const {
+    std::vector<std::uint8_t> is_kept(mesh_.patch_count, 0);
+    if (!all)
+        for (Index w = 0; w < mesh_.wedge_count(); ++w)
+            if (spacing.wanted[0][w] || spacing.wanted[1][w]) is_kept[mesh_.patches[mesh_.wedge_first[w] / 3]] = 1;
+    std::vector<std::uint8_t> is_flawed(mesh_.patch_count, 0), is_met(mesh_.patch_count, 0);
+    for (const Index p : flaws.patches) is_flawed[p] = 1;
+    std::vector<Index> open;
+    for (Index f = 0; f < draft.faces.size(); ++f) {
+        const Index p = patch_beside(draft.graph, draft.network, draft.faces[f].front());
+        if (p == no_index || is_kept[p] != 0) continue;
+        is_met[p] = 1;
+        if (is_flawed[p] != 0 || std::binary_search(flaws.faces.begin(), flaws.faces.end(), f)) open.push_back(f);
+    }
+    std::erase_if(flaws.patches, [&](Index p) { return is_met[p] != 0; });
+    std::erase_if(flaws.faces, [&](Index f) { return std::binary_search(open.begin(), open.end(), f); });
+    return open;
+}
+
 Draft Remesher::draft(double error) {
-    constexpr int most_rounds = 14;
+    constexpr int patience = 4, most_rounds = 14;
     for (int round = 0;; ++round) {
         const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
         watch_.stage("spacing");
-        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}};
+        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {}};
         watch_.stage("lines");
         ++result_.statistics.rounds;
-        d.graph = build_graph(d.network, {0.5 * error});
+        d.graph = build_graph(d.network, {crease_share * error});
         simplify_graph(d.graph, d.network);
         d.faces = d.graph.trace_faces(mesh_);
         Flaws flaws = find_flaws(d.graph, d.network, d.faces);
+        d.open = open_faces(flaws, d, spacing, round >= patience);
         if (flaws.empty()) {
-            std::vector<Index>& nodes = d.nodes;
-            d.polygons = make_polygons(d.graph, d.faces, d.counts, nodes);
+            d.polygons = make_polygons(d.graph, d.faces, d.open, d.counts, d.nodes);
             // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
-            for (int fans = 0; fans < 4; ++fans) {
+            for (int fans = 0; fans < 3; ++fans) {
                 const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
                 if (crowded.empty()) break;
-                if (fans < 3) {
-                    d.polygons = fan_out(d.polygons, crowded);
-                } else {
-                    for (const Index v : crowded)
-                        if (v < nodes.size()) flaws.nodes.push_back(nodes[v]);
-                }
+                d.polygons = fan_out(d.polygons, crowded);
             }
         }
         watch_.stage("arrangement");
         if (flaws.empty() || control_.cancelled()) return d;
         if (round == most_rounds) {
-            for (const Index p : flaws.patches)
-                for (Index f = 0; f < mesh_.face_count(); ++f)
-                    if (mesh_.patches[f] == p) {
-                        d.flaws.push_back(mesh_.points[mesh_.faces[f][0]]);
-                        break;
-                    }
-            for (const Index n : flaws.nodes) d.flaws.push_back(d.graph.nodes[n].point);
+            for (Index f = 0; f < mesh_.face_count() && d.flaws.empty(); ++f)
+                if (std::binary_search(flaws.patches.begin(), flaws.patches.end(), mesh_.patches[f]))
+                    d.flaws.push_back(mesh_.points[mesh_.faces[f][0]]);
+            for (const Index f : flaws.faces) d.flaws.push_back(d.graph.nodes[d.graph.tail(d.faces[f][0])].point);
             return d;
         }
-        refine(flaws, d.graph, spacing);
+        refine(flaws, d, spacing);
     }
 }
 
@@ -382,7 +405,7 @@ double Remesher::refine_where_far(double error, double limit) {
         if (caps_[w] == 0.0 || cap < caps_[w]) caps_[w] = cap;
     };
     const core::TriangleTree& input = *tree_;
-    const CoarseMesh triangles = make_triangles(placed_, input);
+    const CoarseMesh triangles = make_triangles(filled_, input);
     std::vector<Triangle> ids;
     for (std::size_t i = 0; i < triangles.polygon_count(); ++i) {
         const auto t = triangles.polygon(i);
@@ -407,7 +430,7 @@ double Remesher::refine_where_far(double error, double limit) {
 
 /// The share of the placed triangles that are farther from the input than `limit`, and vertices of the input likewise.
 double Remesher::far_share(double limit) const {
-    const CoarseMesh triangles = make_triangles(placed_, *tree_);
+    const CoarseMesh triangles = make_triangles(filled_, *tree_);
     std::vector<Triangle> ids;
     std::size_t far = 0, looked = 0;
     for (std::size_t i = 0; i < triangles.polygon_count(); ++i, ++looked) {
@@ -554,7 +577,9 @@ void Remesher::describe_polygons() {
 bool Remesher::finish() {
     describe_polygons();
     if (!best_->flaws.empty()) return false;
-    CoarseMesh coarse = cut(best_->polygons);
+    const CoarseMesh polygons = cut(best_->polygons);
+    CoarseMesh coarse = polygons;
+    fill_open_faces(best_->layout(), {input_, *tree_, mesh_.diagonal, true}, mending_rule(0.0), coarse, control_);
     watch_.stage("outputs");
     if (options_.output == RemeshOutput::polygons && options_.placement) {
         // Placed as quads and triangles, which say how the polygons are filled.
@@ -565,7 +590,12 @@ bool Remesher::finish() {
     } else {
         place(coarse);
     }
-    placed_ = std::move(coarse);
+    filled_ = std::move(coarse);
+    placed_ = polygons;
+    for (std::size_t v = 0; v < placed_.points.size(); ++v) {
+        placed_.points[v] = filled_.points[v];
+        placed_.places[v] = filled_.places[v];
+    }
     return true;
 }
 
@@ -577,17 +607,21 @@ void Remesher::judge_input(CoarseMesh& mesh, Judge& judge) {
     judge.is_embedded = is_embedded_.value_or(true);
 }
 
-CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
-    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
-    judge_input(mesh, judge);
-    const Layout layout{best_->network, best_->graph, best_->faces, best_->nodes};
+MendingRule Remesher::mending_rule(double error) const {
     MendingRule rule;
     rule.tolerance = error > 0.0 ? 0.7 * error : 0.5 * best_->error;
     rule.side_tolerance = error > 0.0 ? 0.9 * error : 1.5 * best_->error;
+    rule.crease_reach = crease_share * best_->error;
     rule.error = error;
     rule.reach = options_.error ? error : 0.0;
     rule.all_triangles = options_.output == RemeshOutput::triangles;
-    const MendingReport report = mend(layout, judge, rule, mesh, control_);
+    return rule;
+}
+
+CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    judge_input(mesh, judge);
+    const MendingReport report = mend(best_->layout(), judge, mending_rule(error), mesh, control_);
     RemeshStatistics& s = result_.statistics;
     s.mended_regions = report.regions;
     s.mended_triangles = report.triangles;

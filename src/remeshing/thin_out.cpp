@@ -140,23 +140,26 @@ private:
             const std::size_t least = is_on_rim(x) ? 2 : 4;
             if ((is_on_rim(x) || creases_[x].empty()) && around_[x].size() < least) return false;
         }
-        if (is_on_rim(w)) {
-            const Index other = side_of_[v] == no_index ? no_index : beyond(v, w);
+        if (is_outer(w))
             for (const Index x : of_v)
-                if (x != w && x != other && is_on_rim(x) && !std::binary_search(of_w.begin(), of_w.end(), x))
+                if (x != w && is_outer(x) && !std::binary_search(of_w.begin(), of_w.end(), x) && is_joined(w, x))
                     return false;
-        }
         if (!creases_[v].empty()) {
             const Index other = beyond(v, w);
             const bool closes = std::any_of(creases_[w].begin(), creases_[w].end(),
                                             [&](const auto& crease) { return crease.first == other; });
             double reach = 0.3 * rule_.tolerance;
-            if (const Index k = side_of_[v]; k != no_index && patch_.sides[k].curve == no_index)
-                reach = std::max(reach, rule_.side_share * side_lengths_[k]);
+            if (const Index k = side_of_[v]; k != no_index)
+                reach = std::max(
+                    reach, patch_.sides[k].curve == no_index ? rule_.side_share * side_lengths_[k] : rule_.side_reach);
             if (other == w || closes || distance_to_segment(points_[v], points_[w], points_[other]) > reach)
                 return false;
         }
         return std::all_of(around_[v].begin(), around_[v].end(), [&](Index t) { return is_sound(t, v, w); });
+    }
+    bool is_joined(Index v, Index w) const {
+        const Index a = patch_.outer[v], b = patch_.outer[w];
+        return std::binary_search(rule_.joined.begin(), rule_.joined.end(), std::array{std::min(a, b), std::max(a, b)});
     }
     /// On the curve of v, the neighbour that w is not.
     Index beyond(Index v, Index w) const { return creases_[v][creases_[v][0].first == w ? 1 : 0].first; }
