@@ -61,7 +61,7 @@ void compare(const nlohmann::json& surface, double error) {
     certa::implicit::Surface start;
     start.mesh = std::move(raw.mesh);
     start.component_of_triangle = std::move(raw.triangle_components);
-    const certa::implicit::Surface free = certa::implicit::simplify(start, nullptr, tape, {error}, {});
+    const certa::implicit::Surface free = certa::implicit::simplify(start, nullptr, tape, {error}, {}).value();
     certa::ImplicitOptions options;
     options.error = error;
     options.certificate = true;

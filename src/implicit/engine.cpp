@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <string>
 
 #include "core/assert.h"
 #include "implicit/certificate.h"
@@ -25,6 +27,18 @@
 namespace certa {
 namespace implicit {
 namespace {
+
+[[noreturn]] void refuse(DefectKind kind, const std::string& message) {
+    throw InputError({Defect{kind, {}, {}, message}});
+}
+
+[[noreturn]] void refuse_error(double smallest) {
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "a mesh that near to the zero set takes more than %zu triangles: ask for %.1g or more",
+                  Simplification{}.most_triangles, 1.5 * smallest);
+    refuse(DefectKind::option_out_of_range, text);
+}
 
 class Engine {
 public:
@@ -165,10 +179,14 @@ private:
         Surface surface = build_surface(tree_, triangulation, findings, field_);
         if (is_to_be_simplified(findings)) {
             const Frontier frontier(tree_, triangulation, growth);
+            const double smallest = smallest_error(surface, tape_, Simplification{}.most_triangles);
+            if ((error_ ? *error_ : 0.75 * *hausdorff_) < smallest) refuse_error(smallest);
             if (hausdorff_)
                 result_.hausdorff = simplify_to_distance(surface, frontier, tape_, *hausdorff_, control_);
+            else if (auto simplified = simplify(surface, &frontier, tape_, {*error_}, control_))
+                surface = std::move(*simplified);
             else
-                surface = simplify(surface, &frontier, tape_, {*error_}, control_);
+                refuse_error(2 * *error_);
             // A mesh that is not as near as it was to be is no result.
             if (control_.cancelled()) return stop({ImplicitObstacle::Reason::cancelled, {}});
         }
@@ -208,10 +226,6 @@ private:
     std::vector<Triangulation::PointSign> signs_;
     ImplicitResult result_;
 };
-
-[[noreturn]] void refuse(DefectKind kind, const std::string& message) {
-    throw InputError({Defect{kind, {}, {}, message}});
-}
 
 }  // namespace
 

@@ -22,7 +22,7 @@ public:
         Region hull = t[0], center;
         for (std::size_t a = 0; a < 3; ++a) {
             for (const Region& corner : t) hull[a] = interval::hull(hull[a], corner[a]);
-            center[a] = Interval(hull[a].lo / 2 + hull[a].hi / 2);
+            center[a] = Interval(interval::middle(hull[a]));
         }
         const auto& jet = workspace_.evaluate<1>(hull);
         if (interval::sign_of(jet.value) == sign) return true;

@@ -27,10 +27,10 @@ public:
                const Simplification& wanted, const RunControl& control)
         : field_(tape), mesh_(surface, frontier, field_), wanted_(wanted), control_(control) {}
 
-    Surface run() {
+    std::optional<Surface> run() {
         merge_slivers();
         merge_all();
-        refine();
+        if (!refine()) return std::nullopt;
         std::size_t last = 0;
         for (int round = 0; round < 6 && !control_.cancelled(); ++round) {
             control_.report("simplify", 0.3 + 0.1 * round);
@@ -98,8 +98,8 @@ private:
     }
 
     /// Splits the longest edge of every triangle that is too far off. Where the new vertex cannot go to the zero set it
-    /// stays on the edge, and goes there later.
-    void refine() {
+    /// stays on the edge, and goes there later. False if that takes too many triangles.
+    bool refine() {
         for (int round = 0; round < 24; ++round) {
             bool any = false;
             mesh_.sort_by_place();
@@ -107,12 +107,13 @@ private:
             for (std::uint32_t t = 0; t < count && !control_.cancelled(); ++t) {
                 if (!mesh_.is_alive(t)) continue;
                 if (mesh_.fitness(mesh_.corners(mesh_.triangle(t))).error <= wanted_.error) continue;
-                if (mesh_.living_triangles() >= wanted_.most_triangles) return;
+                if (mesh_.living_triangles() >= wanted_.most_triangles) return false;
                 any = split_longest(t) || any;
             }
-            if (!any || control_.cancelled()) return;
+            if (!any || control_.cancelled()) break;
             for (std::uint32_t v = 0; v < mesh_.vertex_count() && !control_.cancelled(); ++v) improve(v, true);
         }
+        return true;
     }
     bool split_longest(std::uint32_t t) {
         const auto [a, b] = edge_by(t, false);
@@ -266,8 +267,20 @@ private:
 
 }  // namespace
 
-Surface simplify(const Surface& surface, const Frontier* frontier, const expression::Tape& tape,
-                 const Simplification& wanted, const RunControl& control) {
+double smallest_error(const Surface& surface, const expression::Tape& tape, std::size_t most_triangles) {
+    Field field(tape);
+    double sum = 0;
+    for (const Triangle& t : surface.mesh.triangles) {
+        const auto at = [&](std::size_t i) { return surface.mesh.positions[index_of(t[i])]; };
+        const auto& jet = field.slope((1.0 / 3) * (at(0) + at(1) + at(2)));
+        const double error = std::fabs(jet.value) / std::hypot(jet.gradient[0], jet.gradient[1], jet.gradient[2]);
+        if (std::isfinite(error)) sum += error;
+    }
+    return sum / static_cast<double>(most_triangles);
+}
+
+std::optional<Surface> simplify(const Surface& surface, const Frontier* frontier, const expression::Tape& tape,
+                                const Simplification& wanted, const RunControl& control) {
     if (surface.mesh.triangles.empty()) return surface;
     return Simplifier(surface, frontier, tape, wanted, control).run();
 }
@@ -276,9 +289,10 @@ std::optional<double> simplify_to_distance(Surface& surface, const Frontier& fro
                                            double length, const RunControl& control) {
     // The nearer the error to the length, the more pieces the proof needs.
     for (const double share : {0.75, 0.5, 0.3}) {
-        Surface trial = simplify(surface, &frontier, tape, {share * length}, control);
-        const bool proved = find_far_triangles(trial.mesh, length, tape, control).empty() && !control.cancelled();
-        if (proved || share == 0.3) surface = std::move(trial);
+        std::optional<Surface> trial = simplify(surface, &frontier, tape, {share * length}, control);
+        if (!trial) break;
+        const bool proved = find_far_triangles(trial->mesh, length, tape, control).empty() && !control.cancelled();
+        if (proved || share == 0.3) surface = std::move(*trial);
         if (proved) return length;
         if (control.cancelled()) break;
     }

@@ -368,6 +368,8 @@ TEST(Engines, RefuseWhatTheyCannotDo) {
     EXPECT_THROW(mesh_implicit(f, low, high, {.engine = ImplicitEngine::plantinga_vegter, .clip = true}), InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.engine = ImplicitEngine::thesis, .clip = true}), InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.error = 0.0}), InputError);
+    EXPECT_THROW(mesh_implicit(f, low, high, {.error = 1e-300}), InputError) << "what no mesh of 8 million reaches";
+    EXPECT_THROW(mesh_implicit(f, low, high, {.hausdorff = 1e-13}), InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.hausdorff = -1.0}), InputError);
     const ImplicitResult plane = mesh_implicit(parse_expression("x+2*y-z"), low, high,
                                                {.max_cells = 20000, .engine = ImplicitEngine::plantinga_vegter});
@@ -386,7 +388,7 @@ std::array<std::size_t, 2> simplified(const char* text, double half, double erro
     const ImplicitResult within = mesh_implicit(f, low, high, {.certificate = true, .error = error});
     EXPECT_TRUE(check_implicit(within.mesh, text, within.certificate).ok()) << text;
     return {within.mesh.triangles.size(),
-            implicit::simplify(start, nullptr, expression::Tape(f), {error}, {}).mesh.triangles.size()};
+            implicit::simplify(start, nullptr, expression::Tape(f), {error}, {}).value().mesh.triangles.size()};
 }
 
 // What keeps W from being as thick as the mesh may be far: here the frontier, critical leaves (long), both signs
