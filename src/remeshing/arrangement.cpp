@@ -311,7 +311,7 @@ void GraphBuilder::refine(Index number, std::vector<Stop>& stops) const {
         stack.pop_back();
         const Point3 a = place(from), d = place(to) - a;
         const double length = dot(d, d);
-        double worst = rule_.crease_error, where = -1.0;
+        double worst = curve.boundary ? rule_.boundary_error : rule_.crease_error, where = -1.0;
         for (double i = std::floor(from) + 1.0; i < to; i += 1.0) {
             const Point3 e = vertex(static_cast<std::size_t>(i)) - a;
             const double t = length > 0.0 ? std::clamp(dot(e, d) / length, 0.0, 1.0) : 0.0;

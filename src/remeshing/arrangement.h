@@ -42,7 +42,8 @@ public:
 };
 
 struct ArrangementRule {
-    double crease_error = 0.0;  ///< sagitta that a straight side may have over a feature curve
+    double crease_error = 0.0;    ///< sagitta that a straight side may have over a crease ...
+    double boundary_error = 0.0;  ///< ... and over the boundary
 };
 
 /// Nodes and edges: crossings of the two families, of lines with features, corners, and as many points of features as

@@ -207,19 +207,26 @@ private:
             for (const Index v : patch.outer) result_.points[v] = node_point(v);
             for (const RegionVertex& v : patch.inner)
                 numbers.push_back(result_.add_vertex(v.point, v.place, v.kind, v.curve));
-            for (const auto& t : patch.triangles)
-                result_.add_polygon(std::array{numbers[t[0]], numbers[t[1]], numbers[t[2]]}, region.faces.front());
+            for (const RegionSide& side : patch.sides)  // between ends that were merged nothing is left
+                if (numbers[side.corners.front()] == numbers[side.corners.back()])
+                    for (const Index v : side.corners) numbers[v] = numbers[side.corners.front()];
+            region.triangles = 0;
+            for (const auto& t : patch.triangles) {
+                const std::array ring{numbers[t[0]], numbers[t[1]], numbers[t[2]]};
+                if (ring[0] == ring[1] || ring[1] == ring[2] || ring[2] == ring[0]) continue;
+                result_.add_polygon(ring, region.faces.front());
+                ++region.triangles;
+            }
             for (const FeatureEdge& e : patch.feature_edges)
                 result_.feature_edges.push_back({numbers[e.a], numbers[e.b], e.curve});
             for (const RegionSide& side : patch.sides) {
-                if (side.corners.size() < 3) continue;
+                if (side.corners.size() < 3 || numbers[side.corners.front()] == numbers[side.corners.back()]) continue;
                 auto& list = between[{numbers[side.corners.back()], numbers[side.corners.front()]}];
                 for (std::size_t i = side.corners.size() - 2; i > 0; --i) list.push_back(numbers[side.corners[i]]);
                 for (std::size_t i = 1; i < side.corners.size() && side.curve != no_index; ++i)
                     result_.feature_edges.push_back(
                         {numbers[side.corners[i - 1]], numbers[side.corners[i]], side.curve});
             }
-            region.triangles = patch.triangles.size();
         }
         add_polygons_around(between);
     }

@@ -42,6 +42,7 @@ RegionPatcher::RegionPatcher(const Layout& layout)
     node_faces_.resize(layout_.graph.nodes.size());
     vertices_.assign(layout_.graph.nodes.size(), no_index);
     for (Index v = 0; v < layout_.nodes.size(); ++v) vertices_[layout_.nodes[v]] = v;
+    for (const MergedVertex& m : layout_.merged) vertices_[layout_.nodes[m.vertex]] = m.into;
     component_faces_.resize(mesh_.component_count);
     for (Index f = 0; f < layout_.faces.size(); ++f) {
         for (const Index h : layout_.faces[f]) {

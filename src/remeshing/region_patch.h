@@ -2,6 +2,7 @@
 // The input itself in place of faces of the graph: what is left to do where no polygon will.
 #include <optional>
 
+#include "remeshing/merge_ends.h"
 #include "remeshing/polygons.h"
 
 namespace certa::remeshing {
@@ -11,8 +12,9 @@ struct Layout {
     const Network& network;
     const Graph& graph;
     const std::vector<std::vector<Index>>& faces;
-    const std::vector<Index>& nodes;  ///< of the graph, per vertex of the polygons; vertices beyond have none
-    const std::vector<Index>& open;   ///< faces that are no disks or meet themselves, sorted: never polygons
+    const std::vector<Index>& nodes;          ///< of the graph, per vertex of the polygons; vertices beyond have none
+    const std::vector<MergedVertex>& merged;  ///< vertices whose nodes belong to others
+    const std::vector<Index>& open;           ///< faces that are no disks or meet themselves, sorted: never polygons
 };
 
 struct RegionVertex {

@@ -60,9 +60,6 @@ void check_options(const RemeshOptions& options) {
     if (options.max_degree != 0 && options.max_degree < 3) refuse_option("max_degree must be 3 at least, or 0");
 }
 
-/// How far straight sides may be from creases, in epsilons of the network.
-constexpr double crease_share = 0.5;
-
 /// One network and what came of it.
 struct Draft {
     double error = 0.0;
@@ -70,12 +67,13 @@ struct Draft {
     Graph graph;
     std::vector<std::vector<Index>> faces;
     std::vector<Index> nodes;  ///< of the graph, per vertex of the polygons
-    std::vector<Index> open;   ///< faces that are no polygons, but have the input's triangles
+    std::vector<MergedVertex> merged;
+    std::vector<Index> open;  ///< faces that are no polygons, but have the input's triangles
     CoarseMesh polygons;
     PolygonCounts counts;
     std::vector<Point3> flaws;  ///< places that no refinement has mended
 
-    Layout layout() const { return {network, graph, faces, nodes, open}; }
+    Layout layout() const { return {network, graph, faces, nodes, merged, open}; }
 };
 
 class Remesher {
@@ -96,10 +94,12 @@ public:
 private:
     bool prepare();
     SpacingRule rule_of(double error) const;
+    ArrangementRule arrangement_rule(double error) const;
     double start_error(double count = 0.0);
     Draft draft(double error);
     std::vector<Index> open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const;
     void refine(const Flaws& flaws, const Draft& draft, const Spacing& spacing);
+    void merge_ends(Draft& draft, const Spacing& spacing) const;
     std::vector<Index> crowded_vertices(const CoarseMesh& mesh) const;
     CoarseMesh fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const;
     double count_of(const Draft& draft) const;
@@ -107,7 +107,10 @@ private:
         return static_cast<double>(options_.vertices ? *options_.vertices : options_.faces.value_or(0));
     }
     double final_count(const CoarseMesh& mesh) const {
-        return static_cast<double>(options_.vertices ? mesh.points.size() : mesh.polygon_count());
+        if (!options_.vertices) return static_cast<double>(mesh.polygon_count());
+        std::vector<Index> used = mesh.corners;
+        std::sort(used.begin(), used.end());
+        return static_cast<double>(std::unique(used.begin(), used.end()) - used.begin());
     }
     static double mended_share(const CoarseMesh& mesh, const RemeshStatistics& statistics) {
         return static_cast<double>(statistics.mended_triangles) / static_cast<double>(mesh.polygon_count());
@@ -164,6 +167,12 @@ SpacingRule Remesher::rule_of(double error) const {
     rule.transfer = options_.transfer;
     rule.balance = balance_;
     return rule;
+}
+
+/// Vertices on creases stay on them, so that their sides miss them by the whole sagitta; placement halves others.
+ArrangementRule Remesher::arrangement_rule(double error) const {
+    const double most = options_.vertices || options_.faces ? mesh_.diagonal : 0.8 * wanted_error();
+    return {std::min(0.75 * error, most), std::min(1.4 * error, most)};
 }
 
 double Remesher::start_error(double wanted) {
@@ -295,21 +304,34 @@ std::vector<Index> Remesher::open_faces(Flaws& flaws, const Draft& draft, const 
     return open;
 }
 
+void Remesher::merge_ends(Draft& draft, const Spacing& spacing) const {
+    constexpr double share = 0.5;  // of the spacing of lines
+    std::vector<double> reach;
+    for (const SurfacePlace& place : draft.polygons.places) {
+        double least = mesh_.diagonal;
+        for (Index c = 3 * place.face; c < 3 * place.face + 3; ++c)
+            for (const auto& at : spacing.at) least = std::min(least, at[mesh_.wedges[c]]);
+        reach.push_back(share * least);
+    }
+    draft.merged = merge_line_ends(draft.polygons, reach, arrangement_rule(draft.error));
+}
+
 Draft Remesher::draft(double error) {
     constexpr int patience = 4, most_rounds = 14;
     for (int round = 0;; ++round) {
         const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
         watch_.stage("spacing");
-        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {}};
+        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {}, {}};
         watch_.stage("lines");
         ++result_.statistics.rounds;
-        d.graph = build_graph(d.network, {crease_share * error});
+        d.graph = build_graph(d.network, arrangement_rule(error));
         simplify_graph(d.graph, d.network);
         d.faces = d.graph.trace_faces(mesh_);
         Flaws flaws = find_flaws(d.graph, d.network, d.faces);
         d.open = open_faces(flaws, d, spacing, round >= patience);
         if (flaws.empty()) {
             d.polygons = make_polygons(d.graph, d.faces, d.open, d.counts, d.nodes);
+            merge_ends(d, spacing);
             // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
             for (int fans = 0; fans < 3; ++fans) {
                 const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
@@ -331,7 +353,7 @@ Draft Remesher::draft(double error) {
 }
 
 double Remesher::count_of(const Draft& draft) const {
-    if (!options_.faces) return static_cast<double>(draft.polygons.points.size());
+    if (!options_.faces) return static_cast<double>(draft.polygons.points.size() - draft.merged.size());
     // Cutting into quads and triangles adds faces.
     return static_cast<double>(options_.output == RemeshOutput::polygons
                                    ? draft.polygons.polygon_count()
@@ -611,7 +633,7 @@ MendingRule Remesher::mending_rule(double error) const {
     MendingRule rule;
     rule.tolerance = error > 0.0 ? 0.7 * error : 0.5 * best_->error;
     rule.side_tolerance = error > 0.0 ? 0.9 * error : 1.5 * best_->error;
-    rule.crease_reach = crease_share * best_->error;
+    rule.crease_reach = arrangement_rule(best_->error).crease_error;
     rule.error = error;
     rule.reach = options_.error ? error : 0.0;
     rule.all_triangles = options_.output == RemeshOutput::triangles;
@@ -662,7 +684,7 @@ void Remesher::finish_count() {
     // What mending adds, the network has to do without.
     for (int round = 0; round < 2 && options_.subdivide == 0 && final_count(mesh) > 1.04 * wanted; ++round) {
         if (control_.cancelled()) return;
-        const double before = final_count(placed_), added = final_count(mesh) - before;
+        const double before = final_count(filled_), added = final_count(mesh) - before;
         if (added < 0.01 * wanted) break;
         const double aim = std::max(before * wanted / (before + added), wanted - 1.3 * added);
         Draft kept = std::move(*best_);
@@ -690,7 +712,7 @@ void Remesher::finish_count() {
     if (control_.cancelled()) return;
     emit(mesh);
     if (options_.subdivide > 0) return;
-    const double before = final_count(placed_), after = final_count(mesh);
+    const double before = final_count(filled_), after = final_count(mesh);
     if (std::abs(std::log(after / wanted)) <= 0.05) return;
     std::string note = "the nearest count that was found is " + std::to_string(static_cast<std::size_t>(after)) +
                        ", not " + std::to_string(static_cast<std::size_t>(wanted));

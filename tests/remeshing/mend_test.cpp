@@ -41,13 +41,13 @@ struct Fixture {
         SpacingRule rule;
         rule.error = error * mesh.diagonal;
         network.emplace(trace_lines(mesh, field, compute_spacing(mesh, field, rule, {}), {}, {}));
-        graph = build_graph(*network, {rule.error});
+        graph = build_graph(*network, {rule.error, rule.error});
         simplify_graph(graph, *network);
         faces = graph.trace_faces(mesh);
         PolygonCounts counts;
         polygons = make_quad_dominant(make_polygons(graph, faces, open, counts, nodes));
     }
-    Layout layout() const { return {*network, graph, faces, nodes, open}; }
+    Layout layout() const { return {*network, graph, faces, nodes, merged, open}; }
     Judge judge() const { return {input, *tree, mesh.diagonal, true}; }
 
     RemeshStatistics statistics;
@@ -58,6 +58,7 @@ struct Fixture {
     Graph graph;
     std::vector<std::vector<Index>> faces;
     std::vector<Index> nodes, open;
+    std::vector<MergedVertex> merged;
     CoarseMesh polygons;
 };
 

@@ -189,7 +189,7 @@ TEST(Arrangement, FacesThatAreNoDisksAreFound) {
     rule.error = 4e-3 * p.mesh.diagonal;
     const Spacing spacing = compute_spacing(p.mesh, p.field, rule, {});
     Network network = trace_lines(p.mesh, p.field, spacing, {}, {});
-    Graph whole = build_graph(network, {rule.error});
+    Graph whole = build_graph(network, {rule.error, rule.error});
     simplify_graph(whole, network);
     const auto faces = whole.trace_faces(p.mesh);
     EXPECT_TRUE(find_flaws(whole, network, faces).empty());
@@ -204,12 +204,12 @@ TEST(Arrangement, FacesThatAreNoDisksAreFound) {
         if (!network.lines()[l].closed ||
             ++kept[network.lines()[l].family] > (network.lines()[l].family == along_max ? 1 : 2))
             network.remove_line(l);
-    Graph few = build_graph(network, {rule.error});
+    Graph few = build_graph(network, {rule.error, rule.error});
     EXPECT_EQ(find_flaws(few, network, few.trace_faces(p.mesh)).patches.empty(),
               kept[along_min] > 0 && kept[along_max] > 0);
     for (Index l = 0; l < network.lines().size(); ++l)
         if (network.lines()[l].family == along_min) network.remove_line(l);
-    Graph none = build_graph(network, {rule.error});
+    Graph none = build_graph(network, {rule.error, rule.error});
     EXPECT_EQ(find_flaws(none, network, none.trace_faces(p.mesh)).patches.size(), 1U);
 }
 
