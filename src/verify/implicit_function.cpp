@@ -347,6 +347,7 @@ std::array<double, 4> Enclosures::guess(const std::array<double, 3>& place) {
 
 /// q = f - t g: q(c) + Q(box) (box - c), where Q is the enclosure of the gradient of q.
 bool Enclosures::combination_misses_zero(Enclosures& other, double t, const BoxOfDoubles& box) {
+    if (quick_->combination_misses_zero(*other.quick_, t, box)) return true;
     std::array<double, 3> center;
     mpfi_set_ui(sum_, 0);
     for (Enclosures* e : {this, &other}) {

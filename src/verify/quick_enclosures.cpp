@@ -252,6 +252,35 @@ bool QuickEnclosures::by_second_order(std::array<Span, 3> place, const std::arra
     return sign_of(sum + middle.value) == sign;
 }
 
+/// With d = box - c: (f - t g)(c) + (f - t g)'(c) d + d (f - t g)''(box) d / 2. Where the two are nearly parallel most
+/// of it cancels.
+bool QuickEnclosures::combination_misses_zero(QuickEnclosures& other, double t, const BoxOfDoubles& box) {
+    if (!is_sound_ || !other.is_sound_) return false;
+    const Span factor{t, t};
+    std::array<Span, 3> place, center, d;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const double middle = middle_of(box.low[i], box.high[i]);
+        place[i] = {box.low[i], box.high[i]};
+        center[i] = {middle, middle};
+        d[i] = place[i] - center[i];
+    }
+    for (QuickEnclosures* e : {this, &other}) {
+        e->evaluate(place, 2);
+        const Values& whole = e->values_[e->function_.result()];
+        if (!whole.defined || !whole.smooth) return false;
+    }
+    const Values &f = values_[function_.result()], &g = other.values_[other.function_.result()];
+    Span sum;
+    for (std::size_t k = 0; k < 6; ++k) {
+        const auto [i, j] = pair_of[k];
+        sum = sum + (f.bend[k] - factor * g.bend[k]) * (i == j ? Span{0.5, 0.5} * square(d[i]) : d[i] * d[j]);
+    }
+    evaluate(center, 1);
+    other.evaluate(center, 1);
+    for (std::size_t i = 0; i < 3; ++i) sum = sum + (f.slope[i] - factor * g.slope[i]) * d[i];
+    return sign_of(sum + (f.value - factor * g.value)) != 0;
+}
+
 /// Fewer levels than with MPFI, and the first part that fails ends it: what needs more digits costs little here.
 bool QuickEnclosures::on_parts(const BoxOfDoubles& box, int axis, int sign, int depth) {
     if (directly(box, axis, sign)) return true;

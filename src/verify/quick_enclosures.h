@@ -25,6 +25,9 @@ public:
     /// Without parts: by the enclosure, the mean value form or Taylor's with second derivatives.
     bool proves_directly(const BoxOfDoubles& box, int axis, int sign) { return is_sound_ && directly(box, axis, sign); }
 
+    /// As Enclosures::combination_misses_zero, by Taylor's form with second derivatives.
+    bool combination_misses_zero(QuickEnclosures& other, double t, const BoxOfDoubles& box);
+
 private:
     using Kind = ImplicitFunction::Kind;
     struct Values {

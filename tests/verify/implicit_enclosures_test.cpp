@@ -5,6 +5,7 @@
 //   squares, powers: the lowest is 0 SlopesNeedADifferentiableFunction
 //   poles, ends of domains           NothingIsProvedAcrossPoles; undefined steps that what follows does not use, too
 //   a slope needs all derivatives    SlopesNeedADifferentiableFunction
+//   so does Taylor's form            CombinationsNeedDerivatives
 //   the mean value form needs slopes TheMeanValueFormNeedsSlopes
 //   its centre lies in the box       TheMiddleLiesInTheBox (of the two enclosures, MPFI's is the one that can tell)
 //   overflow proves nothing          Span.WithoutUseStaySo, OverflowProvesNothing, InfiniteSlopesProveNothing
@@ -218,6 +219,38 @@ TEST(QuickEnclosures, InfiniteSlopesProveNothing) {
     for (const ImplicitFunction* f : {&function, &turned}) {
         QuickEnclosures quick(*f);
         EXPECT_FALSE(quick.proves_directly({{0, 0, 0}, {1e-50, 1, 1}}, 0, -1));
+    }
+}
+
+// Of spheres at a distance of 1e-10 / 2 some hundred boxes tell what first derivatives would need 1e11 for.
+TEST(QuickEnclosures, CombinationsKeepCloseSurfacesApart) {
+    const ImplicitFunction near("x^2+y^2+z^2-1"), beside("x^2+y^2+z^2-1.0000000001"), touching("x^2+y^2+z^2-1+0*x");
+    const BoxOfDoubles box{{0.5, 0.5, 0.5}, {0.75, 0.75, 0.75}};
+    QuickEnclosures f(near), g(beside), same(touching);
+    EXPECT_TRUE(f.combination_misses_zero(g, 1, box));
+    EXPECT_TRUE(g.combination_misses_zero(f, 1, box));
+    EXPECT_FALSE(f.combination_misses_zero(same, 1, box));
+    EXPECT_FALSE(f.combination_misses_zero(g, 0, box)) << "f has zeros there";
+    Enclosures careful(near), other(beside);
+    EXPECT_TRUE(careful.combination_misses_zero(other, 1, box));
+}
+
+// Without derivatives, or values, at all places nothing follows from those at the centre.
+TEST(QuickEnclosures, CombinationsNeedDerivatives) {
+    const BoxOfDoubles box{{-1, -1, -1}, {1, 1, 1}};
+    const ImplicitFunction plane("x/100 + 3 + y/100");
+    for (const char* text : {"sqrt(x^2) - 0.5", "1/(x + 2/3) - 0.1", "log(x + 0.5) + 1", "(y^2)^0.5 - 0.5"}) {
+        const ImplicitFunction function(text);
+        for (const double t : {0.0, 1e-9}) {
+            QuickEnclosures f(function), g(plane);
+            EXPECT_FALSE(f.combination_misses_zero(g, t, box)) << text;
+            f.combination_misses_zero(g, t, {{0.75, 0.75, 0.75}, {1, 1, 1}});  // smooth there, which does not stay so
+            EXPECT_FALSE(f.combination_misses_zero(g, t, box)) << text;
+            Enclosures careful(function), other(plane);
+            EXPECT_FALSE(careful.combination_misses_zero(other, t, box)) << text;
+        }
+        QuickEnclosures f(function), g(plane);
+        EXPECT_FALSE(g.combination_misses_zero(f, 10, box)) << text;
     }
 }
 
