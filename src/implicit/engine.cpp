@@ -265,12 +265,15 @@ ImplicitResult mesh_implicit(const Expression& function, const Point3& low, cons
     }
     if (options.hausdorff && options.clip)
         implicit::refuse(DefectKind::option_out_of_range, "no distance is proved of surfaces that the box clips");
+    if (options.error && options.clip)
+        implicit::refuse(DefectKind::option_out_of_range,
+                         "surfaces that the box clips are not simplified: leave out error or clip");
     const implicit::Grid grid = implicit::checked_grid(low, high);
     interval::require_sound_environment();
     if (options.engine == ImplicitEngine::plantinga_vegter) {
-        if (options.clip || options.hausdorff)
+        if (options.clip || options.hausdorff || options.error)
             implicit::refuse(DefectKind::option_out_of_range,
-                             "plantinga_vegter takes neither clip nor hausdorff: use the engine growth");
+                             "plantinga_vegter takes none of clip, error, hausdorff: use the engine growth");
         return implicit::mesh_by_subdivision(function, grid, options, control);
     }
     if (options.engine == ImplicitEngine::thesis && options.clip)

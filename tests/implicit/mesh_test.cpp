@@ -367,6 +367,8 @@ TEST(Engines, RefuseWhatTheyCannotDo) {
                  InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.engine = ImplicitEngine::plantinga_vegter, .clip = true}), InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.engine = ImplicitEngine::thesis, .clip = true}), InputError);
+    EXPECT_THROW(mesh_implicit(f, low, high, {.error = 0.1, .engine = ImplicitEngine::plantinga_vegter}), InputError);
+    EXPECT_THROW(mesh_implicit(f, low, high, {.error = 0.1, .clip = true}), InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.error = 0.0}), InputError);
     EXPECT_THROW(mesh_implicit(f, low, high, {.error = 1e-300}), InputError) << "what no mesh of 8 million reaches";
     EXPECT_THROW(mesh_implicit(f, low, high, {.hausdorff = 1e-13}), InputError);
