@@ -49,7 +49,7 @@ private:
 
 class Octree {
 public:
-    /// `clipped`: the surface may meet the boundary of the box (docs/implicit-clip.md), else it may not.
+    /// `clipped`: the surface may meet the boundary of the box (docs/implicit-theorem.md), else it may not.
     explicit Octree(const Grid& grid, bool clipped = false);
 
     const Grid& grid() const { return grid_; }

@@ -146,5 +146,25 @@ TEST_F(Conditions, TheTriangulationConforms) {
     }
 }
 
+// Limits met while leaves are split: what doubles carry is one of precision, all others are the caller's.
+TEST(Limit, IsNamedAsWhatItIs) {
+    const expression::Tape tape(parse_expression("x^2+y^2+z^2-1"));
+    Octree tree(*Grid::around({-2, -2, -2}, {2, 2, 2}));
+    std::uint32_t leaf = 0;
+    while (tree.cell(leaf).depth < tree.max_depth()) leaf = tree.split(leaf);
+    using Reason = ImplicitObstacle::Reason;
+    const auto reason = [&](std::uint64_t cells, int depth, bool late) {
+        Limits limits{cells, depth};
+        if (late) limits.deadline = std::chrono::steady_clock::now() - std::chrono::seconds(1);
+        const auto found = split_all(tree, {leaf}, tape, limits, {});
+        EXPECT_TRUE(found && found->leaves == std::vector<std::uint32_t>{leaf});
+        return found ? found->reason : Reason::cancelled;
+    };
+    EXPECT_EQ(reason(1'000'000, tree.max_depth(), false), Reason::precision);
+    EXPECT_EQ(reason(1'000'000, 12, false), Reason::budget);
+    EXPECT_EQ(reason(200, tree.max_depth(), false), Reason::budget);
+    EXPECT_EQ(reason(1'000'000, tree.max_depth(), true), Reason::budget);
+}
+
 }  // namespace
 }  // namespace certa::implicit
