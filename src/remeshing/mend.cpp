@@ -17,6 +17,7 @@
 
 #include "core/parallel.h"
 #include "core/vector3.h"
+#include "remeshing/pair_triangles.h"
 #include "remeshing/templates.h"
 #include "remeshing/thin_out.h"
 
@@ -102,6 +103,7 @@ public:
             if (!widen(report)) break;
             if (report.rounds % 8 == 7) control_.report("mending", 0.95);
         }
+        if (!rule_.all_triangles) pair_in_regions();
         report.regions = regions_.size();
         for (const Region& region : regions_) report.faces += region.faces.size(), report.triangles += region.triangles;
         for (std::size_t f = 0; f < in_set_.size(); ++f) report.cut_faces += in_set_[f] == 0 ? is_cut_[f] : 0;
@@ -111,10 +113,12 @@ public:
     }
 
 private:
+    static constexpr std::size_t most_tries = 8;  ///< in one place, before a region grows all around
     /// A place where nothing is thinned out.
     struct Ball {
         Point3 center;
         double radius = 0.0;
+        std::size_t tries = 1, last_round = 0;
         bool holds(const Point3& p) const { return dot(p - center, p - center) <= radius * radius; }
     };
     struct Region {
@@ -254,6 +258,18 @@ private:
             for (std::size_t q = 0; q < part.polygon_count(); ++q) result_.add_polygon(part.polygon(q), part.parent(q));
     }
 
+    /// Flat parts of regions become quads; those that would do harm are cut again.
+    void pair_in_regions() {
+        std::vector<Index> group;
+        for (std::size_t q = 0; q < result_.polygon_count(); ++q) {
+            const Index f = result_.parent(q);
+            group.push_back(f != no_index && in_set_[f] != 0 ? region_of_[f] : no_index);
+        }
+        // Diagonals of quads are a little off the triangles for which the error was proved.
+        result_ = pair_triangles(result_, group, rule_.error > 0.0 ? 0.005 * rule_.error : 0.1 * rule_.tolerance);
+        find_damage(judge_, result_, control_);
+    }
+
     /// Sides that two polygons walk in the same direction: a cut has repeated one.
     void add_repeated_sides(std::vector<Index>& broken) const {
         std::vector<std::array<Index, 3>> sides;
@@ -279,7 +295,7 @@ private:
             // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
             add_missed_creases(broken, 0.94 * bound());
         }
-        bool has_changed = rule_.error > 0.0 && broken.empty() && cut_far(broken);
+        bool has_changed = rule_.error > 0.0 && cut_far(broken);
         std::sort(broken.begin(), broken.end());
         broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
         report.left.clear();
@@ -299,36 +315,40 @@ private:
             const Region& region = regions_[r];
             if (region.is_whole) continue;
             has_changed = true;
-            std::vector<Index> beyond_help;
-            for (const Index q : polygons)
-                if (!keep(q, report.rounds)) beyond_help.push_back(q);
-            if (beyond_help.size() < polygons.size()) patches_.erase(region.faces);
-            if (!beyond_help.empty())
-                for (const Index g : faces_around(region, beyond_help, 1 + report.rounds / 10)) in_set_[g] = 1;
+            std::vector<Index> near_border;
+            bool is_stuck = false;
+            for (const Index q : polygons) {
+                const std::size_t tries = keep(q, report.rounds);
+                if (tries > 2) near_border.push_back(q);
+                is_stuck = is_stuck || tries > most_tries;
+            }
+            patches_.erase(region.faces);
+            for (const Index g : faces_around(region, near_border, is_stuck)) in_set_[g] = 1;
         }
         return has_changed;
     }
 
-    /// Nothing is thinned out any more at this polygon, and twice as far around it every five rounds, so that many
-    /// rounds do not creep. False: it has been so before.
-    bool keep(Index q, std::size_t round) {
+    /// Nothing is thinned out any more at this polygon, each time somewhat farther around it. How often it has been.
+    std::size_t keep(Index q, std::size_t round) {
         const auto ring = result_.polygon(q);
+        for (Ball& ball : kept_)
+            if (std::all_of(ring.begin(), ring.end(), [&](Index v) { return ball.holds(result_.points[v]); })) {
+                if (ball.last_round == round) return ball.tries;
+                ball.last_round = round;
+                ball.radius *= 1.5;
+                return ++ball.tries;
+            }
         Ball ball;
+        ball.last_round = round;
         for (const Index v : ring)
             ball.center = ball.center + (1.0 / static_cast<double>(ring.size())) * result_.points[v];
-        for (const Index v : ring) ball.radius = std::max(ball.radius, distance(ball.center, result_.points[v]));
-        if (std::any_of(kept_.begin(), kept_.end(), [&](const Ball& b) {
-                return std::all_of(ring.begin(), ring.end(), [&](Index v) { return b.holds(result_.points[v]); });
-            }))
-            return false;
-        ball.radius *= 1.5 * std::pow(2.0, static_cast<double>(std::min<std::size_t>(round / 5, 10)));
+        for (const Index v : ring) ball.radius = std::max(ball.radius, 1.5 * distance(ball.center, result_.points[v]));
         kept_.push_back(ball);
-        return true;
+        return kept_.back().tries;
     }
 
-    /// The region and what touches its border where polygons of its patch are broken; all around, if they do not touch
-    /// it.
-    std::vector<Index> faces_around(const Region& region, const std::vector<Index>& polygons, std::size_t rings) const {
+    /// The region and what touches its border where polygons of its patch are broken; or all around.
+    std::vector<Index> faces_around(const Region& region, const std::vector<Index>& polygons, bool all) const {
         std::vector<Index> grown = region.faces;
         for (const Index q : polygons)
             for (const Index v : result_.polygon(q))
@@ -338,8 +358,7 @@ private:
                 }
         std::sort(grown.begin(), grown.end());
         grown.erase(std::unique(grown.begin(), grown.end()), grown.end());
-        if (grown.size() == region.faces.size() || rings > 1) grown = patcher_.grow(grown);
-        return grown;
+        return all ? patcher_.grow(grown) : grown;
     }
 
     /// Creases and minor corners that nothing of the result is as near as `limit`: the polygons below them. Returns how

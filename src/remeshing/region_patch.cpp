@@ -36,13 +36,17 @@ std::int64_t characteristic_of(const RegionPatch& patch) {
 
 }  // namespace
 
-RegionPatcher::RegionPatcher(const Layout& layout)
-    : layout_(layout), mesh_(layout.network.mesh()), is_minor_(mark_minor(mesh_)) {
+RegionPatcher::RegionPatcher(const Layout& layout) : layout_(layout), mesh_(layout.network.mesh()) {
     owners_.assign(2 * layout_.graph.edges.size(), no_index);
     node_faces_.resize(layout_.graph.nodes.size());
-    vertices_.assign(layout_.graph.nodes.size(), no_index);
-    for (Index v = 0; v < layout_.nodes.size(); ++v) vertices_[layout_.nodes[v]] = v;
-    for (const MergedVertex& m : layout_.merged) vertices_[layout_.nodes[m.vertex]] = m.into;
+    names_.vertices.assign(layout_.graph.nodes.size(), no_index);
+    names_.is_merged.assign(layout_.graph.nodes.size(), 0);
+    names_.is_minor = mark_minor(mesh_);
+    for (Index v = 0; v < layout_.nodes.size(); ++v) names_.vertices[layout_.nodes[v]] = v;
+    for (const MergedVertex& m : layout_.merged) {
+        names_.vertices[layout_.nodes[m.vertex]] = m.into;
+        names_.is_merged[layout_.nodes[m.vertex]] = 1;
+    }
     component_faces_.resize(mesh_.component_count);
     for (Index f = 0; f < layout_.faces.size(); ++f) {
         for (const Index h : layout_.faces[f]) {
@@ -95,7 +99,7 @@ std::optional<RegionPatch> RegionPatcher::make(const std::vector<Index>& faces) 
         std::vector<Index> triangles;
         for (Index f = 0; f < mesh_.face_count(); ++f)
             if (std::binary_search(components.begin(), components.end(), mesh_.components[f])) triangles.push_back(f);
-        return cut_surface(layout_.network, layout_.graph, {}, triangles, vertices_, is_minor_);
+        return cut_surface(layout_.network, layout_.graph, {}, triangles, names_);
     }
     std::vector<Index> rim;
     std::vector<Index> starts;
@@ -108,7 +112,7 @@ std::optional<RegionPatch> RegionPatcher::make(const std::vector<Index>& faces) 
         }
     std::sort(starts.begin(), starts.end());
     if (std::adjacent_find(starts.begin(), starts.end()) != starts.end()) return std::nullopt;  // touches itself
-    std::optional<RegionPatch> patch = cut_surface(layout_.network, layout_.graph, rim, {}, vertices_, is_minor_);
+    std::optional<RegionPatch> patch = cut_surface(layout_.network, layout_.graph, rim, {}, names_);
     // Cycles around what is no disk do not tell its topology; the cut itself keeps it.
     const bool is_told = std::none_of(faces.begin(), faces.end(), [&](Index f) {
         return std::binary_search(layout_.open.begin(), layout_.open.end(), f);
@@ -121,7 +125,7 @@ RegionPatch take_all(const WorkMesh& mesh) {
     std::vector<Index> triangles(mesh.face_count());
     for (Index f = 0; f < triangles.size(); ++f) triangles[f] = f;
     const Network network(mesh);
-    return *cut_surface(network, {}, {}, triangles, {}, mark_minor(mesh));
+    return *cut_surface(network, {}, {}, triangles, {{}, {}, mark_minor(mesh)});
 }
 
 }  // namespace certa::remeshing

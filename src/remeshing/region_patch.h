@@ -43,6 +43,13 @@ struct RegionPatch {
     std::vector<RegionSide> sides;
 };
 
+/// Names for what a cut meets.
+struct CutNames {
+    std::vector<Index> vertices;          ///< of the polygons, per node of the graph
+    std::vector<std::uint8_t> is_merged;  ///< per node: its vertex is that of another node, its own place is not wanted
+    std::vector<std::uint8_t> is_minor;   ///< per edge of the work mesh
+};
+
 class RegionPatcher {
 public:
     explicit RegionPatcher(const Layout& layout);
@@ -66,10 +73,9 @@ private:
 
     Layout layout_;
     const WorkMesh& mesh_;
-    std::vector<Index> owners_;    ///< per half-edge of the graph: the face to its left
-    std::vector<Index> vertices_;  ///< per node: of the polygons
+    std::vector<Index> owners_;  ///< per half-edge of the graph: the face to its left
+    CutNames names_;
     std::vector<std::vector<Index>> node_faces_;
-    std::vector<std::uint8_t> is_minor_;  ///< per edge of the work mesh
     std::vector<std::vector<Index>> component_faces_;
     std::vector<Index> face_components_;
 };

@@ -635,7 +635,7 @@ MendingRule Remesher::mending_rule(double error) const {
     rule.side_tolerance = error > 0.0 ? 0.9 * error : 1.5 * best_->error;
     rule.crease_reach = arrangement_rule(best_->error).crease_error;
     rule.error = error;
-    rule.reach = options_.error ? error : 0.0;
+    rule.reach = error;
     rule.all_triangles = options_.output == RemeshOutput::triangles;
     return rule;
 }

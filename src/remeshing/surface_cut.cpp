@@ -34,9 +34,8 @@ struct Cell {
 
 class SurfaceCutter {
 public:
-    SurfaceCutter(const Network& network, const Graph& graph, std::span<const Index> vertices,
-                  const std::vector<std::uint8_t>& is_minor)
-        : network_(network), mesh_(network.mesh()), graph_(graph), vertices_(vertices), is_minor_(is_minor) {}
+    SurfaceCutter(const Network& network, const Graph& graph, const CutNames& names)
+        : network_(network), mesh_(network.mesh()), graph_(graph), names_(names) {}
 
     bool add_rim(std::span<const Index> rim) {
         for (const Index h : rim) place_nodes(h);
@@ -114,7 +113,7 @@ private:
         const double t = mesh_.along(h) ? crossing.t : 1.0 - crossing.t;
         vertex.place.weights = {0.0, 0.0, 0.0};
         vertex.place.weights[h % 3] = 1.0 - t, vertex.place.weights[next_of(h) % 3] = t;
-        vertex.on_minor_edge = is_minor_[crossing.edge] != 0;
+        vertex.on_minor_edge = names_.is_minor[crossing.edge] != 0;
         return add_point((std::uint64_t{1} << 62) | c, vertex, no_index);
     }
 
@@ -378,7 +377,7 @@ private:
         const auto add = [&](Index a, Index b, Index h) {
             const Index edge = mesh_.edges[h], curve = mesh_.edge_curves[edge];
             if (curve != no_index) features_.push_back({std::min(a, b), std::max(a, b), curve});
-            if (is_minor_[edge] != 0) minors_.push_back({std::min(a, b), std::max(a, b)});
+            if (names_.is_minor[edge] != 0) minors_.push_back({std::min(a, b), std::max(a, b)});
         };
         for (const Cell& cell : cells_) {
             if (cell.side != Side::inside) continue;
@@ -402,7 +401,29 @@ private:
             }
         }
     }
+    /// Sides between nodes with one vertex go on to the next: the node that was merged is a corner of its own no more.
+    void join_contracted_sides() {
+        for (std::size_t i = 0; i < sides_.size();) {
+            const Index front = sides_[i].corners.front(), back = sides_[i].corners.back();
+            const bool joins_next = names_.is_merged[nodes_[back]] != 0;
+            const Index shared = joins_next ? back : front;
+            const auto other = std::find_if(sides_.begin(), sides_.end(), [&](const RegionSide& side) {
+                return (joins_next ? side.corners.front() : side.corners.back()) == shared;
+            });
+            const bool is_contracted = names_.vertices[nodes_[front]] == names_.vertices[nodes_[back]];
+            if (!is_contracted || sides_.size() < 3 || other == sides_.end() || names_.is_merged[nodes_[shared]] == 0) {
+                ++i;
+                continue;
+            }
+            RegionSide &first = joins_next ? sides_[i] : *other, &second = joins_next ? *other : sides_[i];
+            if (first.curve != second.curve) first.curve = no_index;
+            first.corners.insert(first.corners.end(), second.corners.begin() + 1, second.corners.end());
+            sides_.erase(sides_.begin() + (&second - sides_.data()));
+            i = 0;
+        }
+    }
     RegionPatch number_corners() {
+        join_contracted_sides();
         RegionPatch patch;
         std::vector<std::uint8_t> is_used(points_.size(), 0);
         for (const auto& t : triangles_)
@@ -411,7 +432,7 @@ private:
         for (const RegionSide& side : sides_) {
             const Index v = side.corners.front();
             numbers[v] = static_cast<Index>(patch.outer.size());
-            patch.outer.push_back(vertices_[nodes_[v]]);
+            patch.outer.push_back(names_.vertices[nodes_[v]]);
         }
         for (Index v = 0; v < points_.size(); ++v)
             if (is_used[v] != 0 && numbers[v] == no_index) {
@@ -439,8 +460,7 @@ private:
     const Network& network_;
     const WorkMesh& mesh_;
     const Graph& graph_;
-    std::span<const Index> vertices_;
-    const std::vector<std::uint8_t>& is_minor_;
+    const CutNames& names_;
 
     std::unordered_map<std::uint64_t, Index> numbers_;
     std::vector<RegionVertex> points_;
@@ -466,9 +486,8 @@ private:
 }  // namespace
 
 std::optional<RegionPatch> cut_surface(const Network& network, const Graph& graph, std::span<const Index> rim,
-                                       std::span<const Index> whole, std::span<const Index> vertices,
-                                       const std::vector<std::uint8_t>& is_minor) {
-    SurfaceCutter cutter(network, graph, vertices, is_minor);
+                                       std::span<const Index> whole, const CutNames& names) {
+    SurfaceCutter cutter(network, graph, names);
     cutter.add_whole(whole);
     if (!rim.empty() && !cutter.add_rim(rim)) return std::nullopt;
     return cutter.finish();

@@ -8,12 +8,11 @@
 namespace certa::remeshing {
 
 /// `rim`: half-edges of the graph with the wanted side on their left, no node twice; or `whole`, faces to take without
-/// a rim. `vertices`: of the polygons, per node of the graph. `is_minor`: per edge of the work mesh.
+/// a rim.
 ///
 /// Guarantee: which pieces lie inside is decided by the order of crossings alone. Nothing where the rim closes within
 /// one triangle around what is not wanted, or meets a triangle's corner in a way that says no side.
 std::optional<RegionPatch> cut_surface(const Network& network, const Graph& graph, std::span<const Index> rim,
-                                       std::span<const Index> whole, std::span<const Index> vertices,
-                                       const std::vector<std::uint8_t>& is_minor);
+                                       std::span<const Index> whole, const CutNames& names);
 
 }  // namespace certa::remeshing
