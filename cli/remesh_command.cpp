@@ -109,6 +109,9 @@ void say_result(Session& session, const RemeshStatistics& s) {
     if (s.mended_regions > 0)
         session.say("mended       " + counted(s.mended_regions, "region") + " by " +
                     counted(s.mended_triangles, "triangle") + " of the input, where polygons would turn away or meet");
+    if (s.cut_faces > 0)
+        session.say("cut          " + counted(s.cut_faces, "face") +
+                    " into triangles, so that every way to fill them keeps the error");
     if (s.distance_bound > 0.0) session.say("distance     at most " + text_of(s.distance_bound) + ", proved");
     for (const std::string& note : s.notes) session.warn(note);
 }
@@ -145,6 +148,8 @@ ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     session.require_memory(700 * corners + 400 * document.complex.positions.size(), "remeshing this surface");
     const TriangulatedSurface surface = session.timed("triangulate", [&] { return triangulate(document); });
     arguments.options.placement = !arguments.no_placement;
+    if (!arguments.options.error && !arguments.options.vertices && !arguments.options.faces)
+        arguments.options.error = default_remesh_error;
     arguments.options.lines = arguments.lines.given();
     arguments.options.features = document.complex.segments;
     if (!arguments.features.empty())
@@ -183,7 +188,7 @@ void add_remesh_command(CLI::App& app, Action& action) {
     CLI::App* command = app.add_subcommand(
         "remesh", "Few polygons along lines of curvature: anisotropic, quad-dominant, with creases and boundary kept");
     command->footer(
-        "Without --error, --vertices or --faces the error is about 0.2 % of the diagonal.\n"
+        "Without --error, --vertices or --faces the error is 0.2 % of the diagonal.\n"
         "Examples:\n  certa remesh scan.ply --vertices 1500 -o coarse.obj\n"
         "  certa remesh part.off --error 0.1% --lines lines.vtu -o part.obj");
     command->add_option("INPUT", arguments->input.path, "surface mesh (-: standard input)")->required();

@@ -19,9 +19,12 @@ enum class RemeshOutput : std::uint8_t {
     triangles,
 };
 
+/// The error that is asked for where nothing else is.
+inline constexpr Length default_remesh_error{2e-3, true};
+
 /// What `remesh` is asked for; the command and Python have the same names.
 struct RemeshOptions {
-    /// How fine: at most one of the three; without any, an error of 0.2 % of the diagonal.
+    /// How fine: at most one of the three; without any, default_remesh_error.
     std::optional<Length> error = std::nullopt;  ///< bound on the distance between result and input, both ways
     std::optional<std::uint64_t> vertices = std::nullopt;
     std::optional<std::uint64_t> faces = std::nullopt;
@@ -66,7 +69,7 @@ struct RemeshStatistics {
     /// Where polygons would turn away, meet or be too far, triangles of the input stand: regions of these, and
     /// triangles.
     std::size_t mended_regions = 0, mended_triangles = 0;
-    std::size_t cut_faces = 0;  ///< between lines that are triangles, so that every way to fill them keeps the error
+    std::size_t cut_faces = 0;    ///< between lines that are triangles, so that every way to fill them keeps the error
     double distance_bound = 0.0;  ///< where an error was asked for: proved, both ways, in the input's unit
     std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0;
     std::size_t t_nodes = 0;            ///< polygons' corners without a turn, before they became quads and triangles

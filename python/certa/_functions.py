@@ -226,7 +226,7 @@ def remesh(
 ) -> RemeshResult:
     """Few polygons along lines of curvature: anisotropic, quad-dominant, with creases and boundary kept.
 
-    Without error, vertices or faces the error is about 0.2 % of the diagonal.
+    Without error, vertices or faces the error is 0.2 % of the diagonal.
 
     Parameters
     ----------

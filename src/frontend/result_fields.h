@@ -76,6 +76,7 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("rounds", s.rounds);
     put("mended_regions", s.mended_regions);
     put("mended_triangles", s.mended_triangles);
+    put("cut_faces", s.cut_faces);
     put("distance_bound", s.distance_bound);
     put("vertices", s.vertices);
     put("faces", s.faces);

@@ -127,9 +127,7 @@ private:
     double prove_distance();
     double refine_where_far(double error, double limit);
     double far_share(double limit) const;
-    double wanted_error() const {
-        return options_.error ? options_.error->resolve(mesh_.diagonal) : 2e-3 * mesh_.diagonal;
-    }
+    double wanted_error() const { return options_.error.value_or(default_remesh_error).resolve(mesh_.diagonal); }
     bool finish();
     MendingRule mending_rule(double error) const;
     CoarseMesh mended(CoarseMesh mesh, double error);

@@ -135,7 +135,8 @@ TEST(OpenFaces, AFlatPlateWithHolesNeedsItsCornersOnly) {
     const RemeshResult result = remesh(sheet);
     EXPECT_TRUE(check_surface(result.mesh, polygons_of(sheet)).ok());
     EXPECT_EQ(result.statistics.vertices, 12U);  // of the sheet and of two holes
-    EXPECT_EQ(result.statistics.faces, 14U);
+    EXPECT_LE(result.statistics.faces, 9U);  // 14 triangles, most of them in pairs
+    EXPECT_GE(result.statistics.quads, 5U);
     EXPECT_LT(result.statistics.distance_bound, 1e-5);
 }
 
