@@ -165,7 +165,13 @@ private:
                 if (v[i] < v[(i + 1) % 3]) offer(v[i], v[(i + 1) % 3]);
             }
         }
+        std::size_t sorted = mesh_.living_triangles();
         while (!queue_.empty() && !control_.cancelled()) {
+            // Triangles four times as large would look into 64 times as many cells.
+            if (4 * mesh_.living_triangles() < sorted) {
+                sorted = mesh_.living_triangles();
+                mesh_.sort_by_place();
+            }
             const Candidate c = queue_.top();
             queue_.pop();
             if (stamp_[c.a] != c.stamp_a || stamp_[c.b] != c.stamp_b) continue;
