@@ -136,22 +136,25 @@ private:
         }
         std::sort(faces.begin(), faces.end());
         std::vector<char> holds = known_before(faces);
-        core::parallel_for(faces.size(), 256, control, [&](std::size_t begin, std::size_t end) {
+        // Each face once, so that the count of enclosures does not depend on how the loop is cut.
+        std::vector<std::size_t> open;
+        for (std::size_t i = 0; i < faces.size(); ++i) {
+            if (!holds[i] && (i == 0 || compare(faces[i].face, faces[i - 1].face) != 0)) open.push_back(i);
+        }
+        core::parallel_for(open.size(), 256, control, [&](std::size_t begin, std::size_t end) {
             Field field(tape);
-            for (std::size_t i = begin; i < end && !control.cancelled(); ++i) {
-                if (holds[i]) continue;
-                if (i > begin && compare(faces[i].face, faces[i - 1].face) == 0) {
-                    holds[i] = holds[i - 1];
-                    continue;
-                }
-                holds[i] = field.sign_on(region_of(faces[i].face)) == t_.sign(faces[i].face[0]) ? 1 : 0;
+            for (std::size_t k = begin; k < end && !control.cancelled(); ++k) {
+                const Face& face = faces[open[k]].face;
+                holds[open[k]] = field.sign_on(region_of(face)) == t_.sign(face[0]) ? 1 : 0;
             }
         });
         proved_.clear();
         for (std::size_t i = 0; i < faces.size(); ++i) {
+            const bool repeated = i > 0 && compare(faces[i].face, faces[i - 1].face) == 0;
+            if (repeated) holds[i] = holds[i - 1];
             if (!holds[i]) {
                 fail("frontier", faces[i].leaf);
-            } else if (i == 0 || compare(faces[i].face, faces[i - 1].face) != 0) {
+            } else if (!repeated) {
                 proved_.push_back({faces[i].face, t_.sign(faces[i].face[0])});
             }
         }

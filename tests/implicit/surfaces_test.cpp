@@ -114,12 +114,16 @@ TEST(CertifiedSurface, SameBytesForAnyNumberOfThreads) {
     RunControl one, two;
     one.threads = 1;
     two.threads = 2;
-    const ImplicitResult a = mesh_implicit(f, {-2, -2, -2}, {2.1, 2.1, 2.1}, {}, one);
-    const ImplicitResult b = mesh_implicit(f, {-2, -2, -2}, {2.1, 2.1, 2.1}, {}, two);
-    ASSERT_EQ(a.mesh.positions.size(), b.mesh.positions.size());
-    EXPECT_EQ(std::memcmp(a.mesh.positions.data(), b.mesh.positions.data(), a.mesh.positions.size() * sizeof(Point3)),
-              0);
-    EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
+    for (const ImplicitOptions& options : {ImplicitOptions{.certificate = true}, {.certificate = true, .error = 0.1}}) {
+        const ImplicitResult a = mesh_implicit(f, {-2, -2, -2}, {2.1, 2.1, 2.1}, options, one);
+        const ImplicitResult b = mesh_implicit(f, {-2, -2, -2}, {2.1, 2.1, 2.1}, options, two);
+        ASSERT_EQ(a.mesh.positions.size(), b.mesh.positions.size());
+        EXPECT_EQ(
+            std::memcmp(a.mesh.positions.data(), b.mesh.positions.data(), a.mesh.positions.size() * sizeof(Point3)), 0);
+        EXPECT_EQ(a.mesh.triangles, b.mesh.triangles);
+        EXPECT_EQ(a.certificate, b.certificate);
+        EXPECT_EQ(a.statistics.evaluations, b.statistics.evaluations);
+    }
 }
 
 TEST(EmptySurface, IsCertified) {
