@@ -32,6 +32,27 @@ bool is_cut(const FlatFacet& flat) {
     return flat.state != FlatState::crossing && !flat.triangles.empty() && flat.holes_outside.empty();
 }
 
+bool is_plain_quad(const EditableFacet& facet) {
+    if (facet.polygons.size() != 1 || facet.polygons[0].size() != 4 || !facet.holes.empty()) return false;
+    std::vector<std::uint32_t> ring = facet.polygons[0];
+    std::sort(ring.begin(), ring.end());
+    return std::adjacent_find(ring.begin(), ring.end()) == ring.end();
+}
+
+/// A quad that crosses itself however it is seen, as a warped sliver may: its shorter diagonal cuts it.
+FlatFacet cut_quad(const EditableComplex& complex, const std::vector<std::uint32_t>& ring) {
+    const auto square = [&](std::uint32_t a, std::uint32_t b) {
+        const Point3 d = complex.points[b] - complex.points[a];
+        return dot(d, d);
+    };
+    FlatFacet flat;
+    if (square(ring[0], ring[2]) <= square(ring[1], ring[3]))
+        flat.triangles = {{ring[0], ring[1], ring[2]}, {ring[0], ring[2], ring[3]}};
+    else
+        flat.triangles = {{ring[0], ring[1], ring[3]}, {ring[1], ring[2], ring[3]}};
+    return flat;
+}
+
 /// The facet seen along the axis nearest to its normal. A warped facet may cross itself so seen, and not along the
 /// normal; one of the other axes, by the normal's components, may see it as it is then.
 FlatFacet flatten(const PiecewiseLinearComplex& input, std::uint32_t facet, const Point3& normal) {
@@ -59,8 +80,11 @@ RepairedComplex triangulate_facets(const PiecewiseLinearComplex& input, double p
         const Frame frame = build_frame(input, f);
         const double deviation = deviation_of(edited.facets[f], edited, frame);
         if (deviation <= planarity) continue;
-        const FlatFacet flat = flatten(input, f, frame.normal);
-        if (!is_cut(flat)) continue;
+        FlatFacet flat = flatten(input, f, frame.normal);
+        if (!is_cut(flat)) {
+            if (!is_plain_quad(edited.facets[f])) continue;
+            flat = cut_quad(edited, edited.facets[f].polygons[0]);
+        }
         result.repairs.push_back({DefectKind::non_planar_facet,
                                   {{ElementKind::facet, f}},
                                   frame.origin,

@@ -179,6 +179,21 @@ TEST(ConformPlanarity, DecidesWhatIsFlat) {
     expect_conforms(warped_box(1e-16));
 }
 
+TEST(ConformTriangulate, CutsAQuadThatCrossesItselfHoweverItIsSeen) {
+    // A sliver from a remeshed surface: its short sides turn against each other along all three axes.
+    PiecewiseLinearComplex c;
+    c.positions = {{-0.7733102151492819, 0.8730470934518785, 0.33215071611592023},
+                   {-0.7720987532825705, 0.8721244743581419, 0.33163533360847913},
+                   {-0.43956729547486084, 1.0462268644048687, 0.3447046874469164},
+                   {-0.4358923074009105, 1.0480159133200346, 0.3442196389460504}};
+    add_facet(c, {{VertexId{0}, VertexId{1}, VertexId{2}, VertexId{3}}});
+    EXPECT_EQ(expect_refused(c), std::vector{DefectKind::non_planar_facet});
+    const RepairedComplex repaired = repair_complex(c, {.triangulate = true});
+    ASSERT_EQ(repaired.complex.facet_count(), 2U);
+    expect_conforms(repaired.complex);
+    for (const FacetId f : repaired.facet_sources) EXPECT_EQ(index_of(f), 0U);
+}
+
 TEST(ConformTriangulate, CutsWhatIsNotFlatAndNamesTheInputsFacets) {
     const PiecewiseLinearComplex warped = warped_box(0.25);
     EXPECT_EQ(expect_refused(warped), std::vector{DefectKind::non_planar_facet});
