@@ -14,6 +14,7 @@
 #include <limits>
 #include <map>
 #include <numeric>
+#include <tuple>
 
 #include "core/parallel.h"
 #include "core/vector3.h"
@@ -270,17 +271,36 @@ private:
         find_damage(judge_, result_, control_);
     }
 
-    /// Sides that two polygons walk in the same direction: a cut has repeated one.
-    void add_repeated_sides(std::vector<Index>& broken) const {
-        std::vector<std::array<Index, 3>> sides;
+    /// Sides that two polygons walk in the same direction, where a cut has repeated one, and sides that only one walks
+    /// and that are no boundary, where what is around a region does not fit it.
+    void add_odd_sides(std::vector<Index>& broken) const {
+        struct Side {
+            Index from = no_index, to = no_index, polygon = no_index;
+            bool operator<(const Side& other) const {
+                return std::tie(from, to, polygon) < std::tie(other.from, other.to, other.polygon);
+            }
+        };
+        std::vector<Side> sides;
         for (Index q = 0; q < result_.polygon_count(); ++q) {
             const auto ring = result_.polygon(q);
             for (std::size_t i = 0; i < ring.size(); ++i) sides.push_back({ring[i], ring[(i + 1) % ring.size()], q});
         }
         std::sort(sides.begin(), sides.end());
-        for (std::size_t i = 1; i < sides.size(); ++i)
-            if (sides[i][0] == sides[i - 1][0] && sides[i][1] == sides[i - 1][1])
-                broken.push_back(sides[i][2]), broken.push_back(sides[i - 1][2]);
+        std::vector<std::uint64_t> boundary;
+        for (const FeatureEdge& e : result_.feature_edges)
+            if (mesh_.curves[e.curve].boundary) boundary.push_back(pair_key(e.a, e.b));
+        std::sort(boundary.begin(), boundary.end());
+        for (std::size_t i = 0; i < sides.size(); ++i) {
+            const Side& side = sides[i];
+            if (i > 0 && side.from == sides[i - 1].from && side.to == sides[i - 1].to) {
+                broken.push_back(side.polygon), broken.push_back(sides[i - 1].polygon);
+                continue;
+            }
+            const auto back = std::lower_bound(sides.begin(), sides.end(), Side{side.to, side.from, 0});
+            if (back != sides.end() && back->from == side.to && back->to == side.from) continue;
+            if (!std::binary_search(boundary.begin(), boundary.end(), pair_key(side.from, side.to)))
+                broken.push_back(side.polygon);
+        }
     }
 
     /// Takes what is broken into the set. False: nothing is, or nothing can be done about it.
@@ -288,14 +308,16 @@ private:
         const Damage damage = find_damage(judge_, result_, control_);
         report.split_quads = damage.split;
         std::vector<Index> broken = damage.polygons;
-        add_repeated_sides(broken);
+        add_odd_sides(broken);
+        std::vector<Index> apart;
         if (rule_.reach > 0.0) {
-            add_missed_creases(broken, 0.9 * rule_.reach);
+            add_missed_creases(apart, 0.9 * rule_.reach);
         } else if (broken.empty() && add_missed_creases(broken, huge) > 0.9 * reach() && !control_.cancelled()) {
             // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
             add_missed_creases(broken, 0.94 * bound());
         }
-        bool has_changed = rule_.error > 0.0 && cut_far(broken);
+        if (rule_.error > 0.0) add_far(apart);
+        bool has_changed = cut(apart, broken);
         std::sort(broken.begin(), broken.end());
         broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
         report.left.clear();
@@ -436,18 +458,24 @@ private:
         return std::sqrt(square);
     }
 
-    /// Where the error is not kept: polygons that can be filled in several ways are cut in the best one; triangles are
-    /// broken. True: something was cut.
-    bool cut_far(std::vector<Index>& broken) {
+    /// Polygons where the error is not kept.
+    void add_far(std::vector<Index>& apart) const {
         constexpr std::uint64_t pieces = 200000;
-        bool has_cut = false;
         for (const FarPlace& place :
-             find_far_places(result_as_polygons(), input_as_polygons(), rule_.error, pieces, control_)) {
-            const Index q = place.is_on_first ? place.polygon : place.nearest, f = result_.parent(q);
-            if (result_.polygon(q).size() > 3 && f != no_index && is_cut_[f] == 0) {
-                is_cut_[f] = 1;
+             find_far_places(result_as_polygons(), input_as_polygons(), rule_.error, pieces, control_))
+            apart.push_back(place.is_on_first ? place.polygon : place.nearest);
+    }
+    /// What is too far is cut along its best diagonals first; triangles are broken. True: something was cut.
+    bool cut(const std::vector<Index>& apart, std::vector<Index>& broken) {
+        std::vector<std::uint8_t> is_cut_now(is_cut_.size(), 0);
+        bool has_cut = false;
+        for (const Index q : apart) {
+            const Index f = result_.parent(q);
+            const bool may_cut = result_.polygon(q).size() > 3 && f != no_index && in_set_[f] == 0;
+            if (may_cut && is_cut_[f] == 0) {
+                is_cut_[f] = is_cut_now[f] = 1;
                 has_cut = true;
-            } else if (result_.polygon(q).size() == 3 || f == no_index) {
+            } else if (!may_cut || is_cut_now[f] == 0) {
                 broken.push_back(q);
             }
         }

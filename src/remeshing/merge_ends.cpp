@@ -1,16 +1,19 @@
-// Contractions of sides of polygons on feature curves.
+// Contractions of short sides of polygons.
 //
 // A triangle on the side goes, its other two sides become one. A contraction is refused where a polygon would pass the
 // vertex twice, or where both ends have a neighbour in common beyond that: links stay disks, and the topology as it is.
 #include "remeshing/merge_ends.h"
 
 #include <algorithm>
+#include <optional>
 #include <queue>
 
 #include "core/vector3.h"
 
 namespace certa::remeshing {
 namespace {
+
+constexpr double smooth_share = 0.3;  ///< of the reach, for sides that are on no feature
 
 double distance_to_segment(const Point3& p, const Point3& a, const Point3& b) {
     const Point3 d = b - a;
@@ -48,11 +51,12 @@ public:
     }
 
     std::vector<MergedVertex> run() {
-        for (const FeatureEdge& e : mesh_.feature_edges) push(e.a, e.b);
+        for (const auto& ring : rings_)
+            for (std::size_t i = 0; i < ring.size(); ++i) push(ring[i], ring[(i + 1) % ring.size()]);
         while (!queue_.empty()) {
             const Candidate next = queue_.top();
             queue_.pop();
-            if (find_side(next.a, next.b) == nullptr) continue;
+            if (around_[next.a].empty() || around_[next.b].empty()) continue;
             if (!merge(next.b, next.a)) merge(next.a, next.b);
         }
         write_back();
@@ -61,8 +65,9 @@ public:
 
 private:
     void push(Index a, Index b) {
-        const double length = distance(mesh_.points[a], mesh_.points[b]);
-        if (length < std::min(reach_[a], reach_[b])) queue_.push({length, std::min(a, b), std::max(a, b)});
+        const double length = distance(mesh_.points[a], mesh_.points[b]), reach = std::min(reach_[a], reach_[b]);
+        if (length < (find_side(a, b) != nullptr ? reach : smooth_share * reach))
+            queue_.push({length, std::min(a, b), std::max(a, b)});
     }
     CurveSide* find_side(Index v, Index other) {
         const auto at = std::find_if(sides_[v].begin(), sides_[v].end(),
@@ -84,16 +89,14 @@ private:
 
     bool merge(Index v, Index into) {
         const VertexKind kind = mesh_.kinds[v];
-        if ((kind != VertexKind::crease && kind != VertexKind::boundary) || sides_[v].size() != 2) return false;
-        const CurveSide near = *find_side(v, into), far = sides_[v][sides_[v][0].other == into ? 1 : 0];
-        if (far.other == into || far.curve != near.curve || find_side(into, far.other) != nullptr) return false;
-        CurveSide joined{far.other, far.curve, near.passed};
-        joined.passed.push_back(mesh_.points[v]);
-        joined.passed.insert(joined.passed.end(), far.passed.begin(), far.passed.end());
-        const double error = kind == VertexKind::boundary ? rule_.boundary_error : rule_.crease_error;
-        for (const Point3& p : joined.passed)
-            if (distance_to_segment(p, mesh_.points[into], mesh_.points[far.other]) > error) return false;
-        if (!may_merge(v, into)) return false;
+        if (kind == VertexKind::corner) return false;
+        std::optional<CurveSide> joined;
+        if (kind != VertexKind::smooth) {
+            joined = join_sides(v, into);
+            if (!joined) return false;
+        }
+        const std::vector<Index> around = neighbours(v);
+        if (std::find(around.begin(), around.end(), into) == around.end() || !may_merge(v, into)) return false;
         for (const Index q : around_[v]) {
             auto& ring = rings_[q];
             if (std::find(ring.begin(), ring.end(), into) != ring.end()) {
@@ -106,12 +109,28 @@ private:
         }
         around_[v].clear();
         sides_[v].clear();
-        *find_side(into, v) = joined;
-        CurveSide& back = *find_side(far.other, v);
-        back = {into, joined.curve, joined.passed};
+        if (joined) {
+            *find_side(into, v) = *joined;
+            *find_side(joined->other, v) = {into, joined->curve, joined->passed};
+        }
         merged_.push_back({v, into});
-        push(into, joined.other);
+        for (const Index x : around)
+            if (x != into) push(into, x);
         return true;
+    }
+    /// The side from `into` that is left of those of v on its curve; nothing where that must not be.
+    std::optional<CurveSide> join_sides(Index v, Index into) {
+        const CurveSide* near = find_side(v, into);
+        if (near == nullptr || sides_[v].size() != 2) return std::nullopt;
+        const CurveSide& far = sides_[v][sides_[v][0].other == into ? 1 : 0];
+        if (far.other == into || far.curve != near->curve || find_side(into, far.other) != nullptr) return std::nullopt;
+        CurveSide joined{far.other, far.curve, near->passed};
+        joined.passed.push_back(mesh_.points[v]);
+        joined.passed.insert(joined.passed.end(), far.passed.begin(), far.passed.end());
+        const double error = mesh_.kinds[v] == VertexKind::boundary ? rule_.boundary_error : rule_.crease_error;
+        for (const Point3& p : joined.passed)
+            if (distance_to_segment(p, mesh_.points[into], mesh_.points[far.other]) > error) return std::nullopt;
+        return joined;
     }
     /// What was a triangle: its other two sides are one now.
     void drop(Index q) {

@@ -1,5 +1,5 @@
 #pragma once
-// Ends of lines that lie close to each other on a crease or boundary become one vertex.
+// Ends of lines that lie close to each other on a crease or boundary become one vertex, and nodes in one place.
 #include <span>
 
 #include "remeshing/arrangement.h"
@@ -12,9 +12,10 @@ struct MergedVertex {
     Index vertex = no_index, into = no_index;
 };
 
-/// Contracts sides on features that are shorter than `reach` (per vertex; the smaller of the two ends counts), shortest
-/// first. Lines of both families, and those on either side of a crease, end where they happen to: one vertex does for
-/// two of them. Corners stay; a side keeps to the rule's errors of the nodes that were on it.
+/// Contracts sides on features that are shorter than `reach` (per vertex; the smaller of the two ends counts), and
+/// others that are shorter than a third of it, shortest first. Lines of both families, and those on either side of a
+/// crease, end where they happen to: one vertex does for two of them. Corners stay; a side keeps to the rule's errors
+/// of the nodes that were on it.
 ///
 /// Guarantee: no side is repeated that was not, the topology stays. Vertices that were merged belong to no polygon any
 /// more; triangles on contracted sides are gone.

@@ -62,11 +62,29 @@ TEST(MergeEnds, KeepsCornersAndGoesIntoThem) {
 }
 
 TEST(MergeEnds, ChainsEndInOneVertex) {
-    CoarseMesh mesh = row({0.0, 1.0, 1.01, 1.03, 1.06, 2.0});
+    CoarseMesh mesh = row({0.0, 1.0, 1.11, 1.23, 1.36, 2.0});
     const auto merged = merge_line_ends(mesh, std::vector<double>(mesh.points.size(), 0.3), rule);
     ASSERT_EQ(merged.size(), 3U);
     for (const MergedVertex& m : merged) EXPECT_EQ(m.into, merged.front().into);
     EXPECT_EQ(mesh.feature_edges.size(), 2U);
+}
+
+TEST(MergeEnds, OffFeaturesOnlyVeryShortSidesGo) {
+    // Two rows: vertices 4 to 7 are inside, 5 and 6 next to each other.
+    CoarseMesh mesh;
+    for (const double y : {0.0, 1.0, 2.0})
+        for (const double x : {0.0, 0.9, 1.1, 2.0}) mesh.add_vertex({x, y, 0.0}, {});
+    for (const Index low : {0U, 4U})
+        for (Index i = low; i < low + 3; ++i) mesh.add_polygon(std::array{i, i + 1, i + 5, i + 4});
+    CoarseMesh near = mesh;
+    near.points[6] = {0.95, 1.0, 0.0};
+    const std::vector<double> reach(mesh.points.size(), 0.3);
+    EXPECT_TRUE(merge_line_ends(mesh, reach, rule).empty());
+    const auto merged = merge_line_ends(near, reach, rule);
+    ASSERT_EQ(merged.size(), 1U);
+    EXPECT_EQ(merged[0].vertex + merged[0].into, 11U);
+    EXPECT_EQ(near.polygon_count(), 6U);
+    EXPECT_TRUE(compute_surface_shape(polygon_mesh(near)).is_oriented());
 }
 
 TEST(MergeEnds, LeavesWhatWouldMoveTheCurve) {
@@ -135,7 +153,7 @@ TEST(OpenFaces, AFlatPlateWithHolesNeedsItsCornersOnly) {
     const RemeshResult result = remesh(sheet);
     EXPECT_TRUE(check_surface(result.mesh, polygons_of(sheet)).ok());
     EXPECT_EQ(result.statistics.vertices, 12U);  // of the sheet and of two holes
-    EXPECT_LE(result.statistics.faces, 9U);  // 14 triangles, most of them in pairs
+    EXPECT_LE(result.statistics.faces, 9U);      // 14 triangles, most of them in pairs
     EXPECT_GE(result.statistics.quads, 5U);
     EXPECT_LT(result.statistics.distance_bound, 1e-5);
 }
