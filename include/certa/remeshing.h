@@ -22,6 +22,19 @@ enum class RemeshOutput : std::uint8_t {
 /// The error that is asked for where nothing else is.
 inline constexpr Length default_remesh_error{2e-3, true};
 
+/// How directions are smoothed.
+enum class SmoothingMethod : std::uint8_t {
+    screened,  ///< one sparse solve for unit directions: strong parts do not outvote weak ones
+    gaussian,  ///< the thesis's: tensors convolved with a Gaussian whose standard deviation is the smoothing length
+};
+
+/// Points instead of lines where curvature is alike in all directions (thesis 4.2.2).
+enum class IsotropicSamples : std::uint8_t {
+    needed,  ///< at umbilics whose polygon is no quad and would pass too far below them
+    none,
+    all,  ///< wherever polygons around umbilics, or in spherical parts, have room; lines are denser near umbilics
+};
+
 /// What `remesh` is asked for; the command and Python have the same names.
 struct RemeshOptions {
     /// How fine: at most one of the three; without any, default_remesh_error.
@@ -32,7 +45,9 @@ struct RemeshOptions {
     double feature_angle_radians = 0.6981;        ///< an edge is a crease above this angle between its faces' normals
     std::vector<Edge> features;                   ///< edges of the input that are creases whatever their angle
     std::optional<Length> smooth = std::nullopt;  ///< length over which directions are smoothed; chosen when empty
-    double transfer = 0.5;                        ///< lines per length grow like |k|^transfer; 0.5 is the thesis's
+    SmoothingMethod smoothing_method = SmoothingMethod::screened;
+    double transfer = 0.5;  ///< lines per length grow like |k|^transfer; 0.5 is the thesis's
+    IsotropicSamples isotropic_samples = IsotropicSamples::needed;
     RemeshOutput output = RemeshOutput::quad_dominant;
     std::uint64_t max_degree = 0;  ///< polygons: at most so many corners; 0: any number
     bool placement = true;         ///< move vertices to where the error is least
@@ -61,7 +76,10 @@ struct RemeshStatistics {
     std::size_t unused_vertices = 0, degenerate_triangles = 0, flipped_triangles = 0, non_manifold_edges = 0;
     std::size_t split_vertices = 0;  ///< where several sheets met in one vertex of the input
     std::size_t wedges = 0, trisectors = 0;
-    int umbilic_half_turns = 0;  ///< sum of all indices times two
+    std::size_t cancelled_pairs = 0;           ///< of a wedge and a trisector, closer than the spacing: smoothed away
+    std::size_t umbilics_typed_otherwise = 0;  ///< by the linear field's polynomial than by the index, which counts
+    int umbilic_half_turns = 0;                ///< sum of all indices times two
+    std::size_t isotropic_samples = 0;         ///< vertices that polygons are triangulated around
     std::size_t lines_min = 0, lines_max = 0, closed_lines = 0;
     double spacing_error = 0.0;  ///< epsilon of the spacing of lines, as resolved
     double smoothing = 0.0;      ///< smoothing length, as resolved

@@ -8,6 +8,8 @@ namespace certa::frontend {
 namespace {
 
 constexpr double degrees = std::numbers::pi / 180.0;
+constexpr std::array<std::string_view, 2> smoothing_names{"screened", "gaussian"};
+constexpr std::array<std::string_view, 3> sample_names{"needed", "none", "all"};
 constexpr std::array<std::string_view, 3> output_names{"polygons", "quad-dominant", "triangles"};
 
 [[noreturn]] void out_of_range(std::string_view name, std::string_view text, std::string_view allowed) {
@@ -85,11 +87,27 @@ constexpr std::array remesh_table{
                                }},
         {},
         "length over which directions are smoothed (default: from the mesh and the spacing of lines)"},
+    Option<RemeshOptions>{
+        "smoothing_method",
+        "smoothing-method",
+        Choice<RemeshOptions>{
+            smoothing_names, [](const RemeshOptions& o) { return static_cast<std::size_t>(o.smoothing_method); },
+            [](RemeshOptions& o, std::size_t i) { o.smoothing_method = static_cast<SmoothingMethod>(i); }},
+        {},
+        "how: screened solves for unit directions, gaussian averages tensors as the thesis does"},
     Option<RemeshOptions>{"transfer",
                           "transfer",
                           &RemeshOptions::transfer,
                           {0.0, 2.0, false, false},
                           "density of lines goes like this power of curvature"},
+    Option<RemeshOptions>{
+        "isotropic_samples",
+        "isotropic-samples",
+        Choice<RemeshOptions>{
+            sample_names, [](const RemeshOptions& o) { return static_cast<std::size_t>(o.isotropic_samples); },
+            [](RemeshOptions& o, std::size_t i) { o.isotropic_samples = static_cast<IsotropicSamples>(i); }},
+        {},
+        "points that polygons are triangulated around: at umbilics that need one, none, or all over spherical parts"},
     Option<RemeshOptions>{
         "output",
         "output",

@@ -85,6 +85,9 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("t_nodes", s.t_nodes);
     put("quad_share_with_t", s.quad_share_with_t);
     put("quad_share_without_t", s.quad_share_without_t);
+    put("cancelled_pairs", s.cancelled_pairs);
+    put("umbilics_typed_otherwise", s.umbilics_typed_otherwise);
+    put("isotropic_samples", s.isotropic_samples);
     put("notes", s.notes);
 }
 

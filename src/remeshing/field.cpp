@@ -11,8 +11,10 @@
 
 #include <algorithm>
 #include <numbers>
+#include <numeric>
 
 #include "core/assert.h"
+#include "remeshing/connection.h"
 
 namespace certa::remeshing {
 namespace {
@@ -61,130 +63,13 @@ double intrinsic_angle(const WorkMesh& mesh, Index wedge, const Point3& normal, 
     return best;
 }
 
-/// Symmetric matrix by rows, as the connection Laplacian has it: neighbours, weights and transports.
-struct Laplacian {
-    std::vector<std::uint64_t> offsets;
-    std::vector<Index> columns;
-    std::vector<double> weights;
-    std::vector<Complex> transports;  ///< brings the neighbour's square into this wedge's frame
-    std::vector<double> diagonal, mass;
-};
-
-std::array<double, 3> cotangents(const WorkMesh& mesh, Index f, double& area) {
-    std::array<double, 3> cot{};
-    const Complex b = mesh.local(f, 1), c = mesh.local(f, 2);
-    area = 0.5 * b.real() * c.imag();
-    const std::array<Complex, 3> p{Complex(0.0), b, c};
-    for (std::size_t i = 0; i < 3; ++i) {  // of the angle opposite half-edge i
-        const Complex u = p[i] - p[(i + 2) % 3], v = p[(i + 1) % 3] - p[(i + 2) % 3];
-        const Complex turn = v * std::conj(u);
-        cot[i] = turn.real() / turn.imag();
-    }
-    return cot;
-}
-
-Laplacian build_laplacian(const WorkMesh& mesh) {
-    Laplacian laplacian;
-    const Index wedges = mesh.wedge_count();
-    std::vector<double> cot(mesh.edges.size());
-    laplacian.mass.assign(wedges, 0.0);
-    laplacian.diagonal.assign(wedges, 0.0);
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        double area = 0.0;
-        const auto values = cotangents(mesh, f, area);
-        for (Index i = 0; i < 3; ++i) {
-            cot[3 * f + i] = values[i];
-            laplacian.mass[mesh.wedges[3 * f + i]] += area / 3.0;
-        }
-    }
-    const auto weight_of = [&](Index h) {
-        const double sum = mesh.is_feature(h) ? cot[h] : cot[h] + cot[mesh.opposites[h]];
-        return std::clamp(0.5 * sum, 1e-3, 1e3);
-    };
-    laplacian.offsets.assign(1, 0);
-    const auto add = [&](Index w, Index other, double weight, double turn) {
-        laplacian.columns.push_back(other);
-        laplacian.weights.push_back(weight);
-        laplacian.transports.push_back(std::polar(1.0, 2.0 * turn));
-        laplacian.diagonal[w] += weight;
-    };
-    for (Index w = 0; w < wedges; ++w) {
-        Index c = mesh.wedge_first[w];
-        const Index first = c;
-        do {
-            const Index n = next_of(c), p = previous_of(c);
-            add(w, mesh.wedges[n], weight_of(c), mesh.corner_start[c] - mesh.corner_start[n] - mesh.corner_angle[n]);
-            const Index next = mesh.next_corner(c);
-            if (next == no_index)
-                add(w, mesh.wedges[p], weight_of(p),
-                    mesh.corner_start[c] + mesh.corner_angle[c] - mesh.corner_start[p]);
-            c = next;
-        } while (c != no_index && c != first);
-        laplacian.offsets.push_back(laplacian.columns.size());
-    }
-    return laplacian;
-}
-
-/// Conjugate gradients with the diagonal as preconditioner, for (L + screen) u = right.
-void solve(const Laplacian& laplacian, const std::vector<double>& screen, const std::vector<Complex>& right,
-           std::vector<Complex>& u, const RunControl& control) {
-    const std::size_t n = u.size();
-    std::vector<Complex> r(n), p(n), ap(n);
-    std::vector<double> inverse(n);
-    const auto apply = [&](const std::vector<Complex>& x, std::vector<Complex>& y) {
-        for (std::size_t i = 0; i < n; ++i) {
-            Complex sum = (laplacian.diagonal[i] + screen[i]) * x[i];
-            for (std::uint64_t k = laplacian.offsets[i]; k < laplacian.offsets[i + 1]; ++k) {
-                const Complex t = laplacian.transports[k], v = x[laplacian.columns[k]];
-                const double w = laplacian.weights[k];
-                sum -= Complex(w * (t.real() * v.real() - t.imag() * v.imag()),
-                               w * (t.real() * v.imag() + t.imag() * v.real()));
-            }
-            y[i] = sum;
-        }
-    };
-    const auto product = [&](const std::vector<Complex>& a, const std::vector<Complex>& b) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < n; ++i) sum += a[i].real() * b[i].real() + a[i].imag() * b[i].imag();
-        return sum;
-    };
-    for (std::size_t i = 0; i < n; ++i) inverse[i] = 1.0 / (laplacian.diagonal[i] + screen[i] + 1e-300);
-    apply(u, ap);
-    for (std::size_t i = 0; i < n; ++i) r[i] = right[i] - ap[i];
-    std::vector<Complex> z(n);
-    for (std::size_t i = 0; i < n; ++i) z[i] = inverse[i] * r[i];
-    p = z;
-    double rz = product(r, z);
-    double start = 0.0;
-    for (std::size_t i = 0; i < n; ++i) start += inverse[i] * std::norm(right[i]);
-    for (int round = 0; round < 2000 && rz > 1e-10 * start && !control.cancelled(); ++round) {
-        apply(p, ap);
-        const double pap = product(p, ap);
-        if (!(pap > 0.0)) break;
-        const double alpha = rz / pap;
-        for (std::size_t i = 0; i < n; ++i) u[i] += alpha * p[i], r[i] -= alpha * ap[i];
-        for (std::size_t i = 0; i < n; ++i) z[i] = inverse[i] * r[i];
-        const double next = product(r, z), beta = next / rz;
-        rz = next;
-        for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
-    }
-}
-
 /// Wedges that no confidence reaches: a direction along a feature, so that everything has one.
 void direct_flat_parts(const WorkMesh& mesh, DirectionField& field) {
     for (Index w = 0; w < mesh.wedge_count(); ++w)
         if (std::norm(field.squares[w]) < 1e-24) field.squares[w] = 1e-12;
 }
 
-std::array<double, 3> linear_zero(const WorkMesh& mesh, const DirectionField& field, Index f, bool& inside) {
-    std::array<Complex, 3> z{};
-    for (Index i = 0; i < 3; ++i) {
-        const Index c = 3 * f + i;
-        const Complex o = mesh.local(f, i), p = mesh.local(f, (i + 1) % 3), q = mesh.local(f, (i + 2) % 3);
-        const double bisector = std::arg(p - o) + 0.5 * std::arg((q - o) * std::conj(p - o));
-        z[i] = field.squares[mesh.wedges[c]] *
-               std::polar(1.0, 2.0 * (bisector - mesh.corner_start[c] - 0.5 * mesh.corner_angle[c]));
-    }
+std::array<double, 3> linear_zero(const std::array<Complex, 3>& z, bool& inside) {
     // Weights proportional to the signed areas that 0 spans with two values.
     std::array<double, 3> weights{};
     double sum = 0.0;
@@ -257,15 +142,22 @@ DirectionField measure_directions(const WorkMesh& mesh, const RunControl& contro
     return field;
 }
 
+void spread_to_halfedges(const WorkMesh& mesh, std::span<const Index> faces, DirectionField& field) {
+    for (const Index f : faces)
+        for (Index h = 3 * f; h < 3 * f + 3; ++h) {
+            const Index n = next_of(h);
+            field.starts[h] = field.squares[mesh.wedges[h]] * std::polar(1.0, -2.0 * mesh.corner_start[h]);
+            field.ends[h] =
+                field.squares[mesh.wedges[n]] * std::polar(1.0, -2.0 * (mesh.corner_start[n] + mesh.corner_angle[n]));
+        }
+}
+
 void spread_to_halfedges(const WorkMesh& mesh, DirectionField& field) {
     field.starts.resize(mesh.edges.size());
     field.ends.resize(mesh.edges.size());
-    for (Index h = 0; h < mesh.edges.size(); ++h) {
-        const Index n = next_of(h);
-        field.starts[h] = field.squares[mesh.wedges[h]] * std::polar(1.0, -2.0 * mesh.corner_start[h]);
-        field.ends[h] =
-            field.squares[mesh.wedges[n]] * std::polar(1.0, -2.0 * (mesh.corner_start[n] + mesh.corner_angle[n]));
-    }
+    std::vector<Index> all(mesh.faces.size());
+    std::iota(all.begin(), all.end(), 0U);
+    spread_to_halfedges(mesh, all, field);
 }
 
 int half_turns_of(const WorkMesh& mesh, const DirectionField& field, Index face) {
@@ -279,6 +171,35 @@ int half_turns_of(const WorkMesh& mesh, const DirectionField& field, Index face)
         sum += (own ? turn : -turn) + 2.0 * mesh.corner_angle[h];
     }
     return static_cast<int>(std::lround(sum / (2.0 * pi)));
+}
+
+std::array<Complex, 3> corner_values(const WorkMesh& mesh, const DirectionField& field, Index face) {
+    std::array<Complex, 3> z{};
+    for (Index i = 0; i < 3; ++i) {
+        const Index c = 3 * face + i;
+        const Complex o = mesh.local(face, i), p = mesh.local(face, (i + 1) % 3), q = mesh.local(face, (i + 2) % 3);
+        const double bisector = std::arg(p - o) + 0.5 * std::arg((q - o) * std::conj(p - o));
+        z[i] = field.squares[mesh.wedges[c]] *
+               std::polar(1.0, 2.0 * (bisector - mesh.corner_start[c] - 0.5 * mesh.corner_angle[c]));
+    }
+    return z;
+}
+
+std::optional<FieldUmbilic> find_umbilic(const WorkMesh& mesh, const DirectionField& field, Index face) {
+    const int turns = half_turns_of(mesh, field, face);
+    if (turns == 0) return std::nullopt;
+    FieldUmbilic umbilic{face, turns, {}, false, 0};
+    umbilic.weights = linear_zero(corner_values(mesh, field, face), umbilic.linear_zero);
+    if (umbilic.linear_zero) umbilic.typed_half_turns = type_of_face(mesh, field, face).half_turns;
+    return umbilic;
+}
+
+void finish_directions(const WorkMesh& mesh, DirectionField& field) {
+    direct_flat_parts(mesh, field);
+    spread_to_halfedges(mesh, field);
+    field.umbilics.clear();
+    for (Index f = 0; f < mesh.face_count(); ++f)
+        if (const auto umbilic = find_umbilic(mesh, field, f)) field.umbilics.push_back(*umbilic);
 }
 
 void smooth_directions(const WorkMesh& mesh, DirectionField& field, double length, const RunControl& control) {
@@ -299,16 +220,7 @@ void smooth_directions(const WorkMesh& mesh, DirectionField& field, double lengt
     } else {
         field.squares = field.measured;
     }
-    direct_flat_parts(mesh, field);
-    spread_to_halfedges(mesh, field);
-    field.umbilics.clear();
-    for (Index f = 0; f < mesh.face_count(); ++f) {
-        const int turns = half_turns_of(mesh, field, f);
-        if (turns == 0) continue;
-        FieldUmbilic umbilic{f, turns, {}, false};
-        umbilic.weights = linear_zero(mesh, field, f, umbilic.linear_zero);
-        field.umbilics.push_back(umbilic);
-    }
+    finish_directions(mesh, field);
 }
 
 }  // namespace certa::remeshing

@@ -1,5 +1,8 @@
 #pragma once
 // Principal directions on the work mesh: tensors, smoothing, umbilics (thesis 4.1).
+#include <optional>
+#include <span>
+
 #include "remeshing/work_mesh.h"
 
 namespace certa::remeshing {
@@ -13,6 +16,7 @@ struct FieldUmbilic {
     int half_turns = 0;  ///< +1: wedge, -1: trisector
     std::array<double, 3> weights{};
     bool linear_zero = false;  ///< the place is the zero of the linear field; else the centroid
+    int typed_half_turns = 0;  ///< by the linear field's polynomial of third order; 0 where it has no zero in the face
 };
 
 /// Directions as squares of unit complex numbers along the direction of k_max, one per wedge, in the wedge's frame; and
@@ -36,8 +40,25 @@ struct DirectionField {
 DirectionField measure_directions(const WorkMesh& mesh, const RunControl& control);
 /// Smooths over `length`; fills squares, starts, ends and umbilics.
 void smooth_directions(const WorkMesh& mesh, DirectionField& field, double length, const RunControl& control);
+/// Convolves the tensors with a Gaussian instead, as the thesis does: k_min and k_max change, too.
+void smooth_by_gaussian(const WorkMesh& mesh, DirectionField& field, double deviation, const RunControl& control);
+/// Part of both: directions where there are none, half-edge values, umbilics.
+void finish_directions(const WorkMesh& mesh, DirectionField& field);
+/// The umbilic of a face, if the directions turn around it.
+std::optional<FieldUmbilic> find_umbilic(const WorkMesh& mesh, const DirectionField& field, Index face);
 /// Half-edge values from the wedges' (part of smooth_directions).
 void spread_to_halfedges(const WorkMesh& mesh, DirectionField& field);
+/// The same in some faces.
+void spread_to_halfedges(const WorkMesh& mesh, std::span<const Index> faces, DirectionField& field);
+/// The squares at a face's corners in the face's own plane.
+std::array<Complex, 3> corner_values(const WorkMesh& mesh, const DirectionField& field, Index face);
+struct UmbilicType {
+    int half_turns = 0;
+    int separatrices = 0;  ///< lines along k_max that end in the umbilic
+};
+/// The zero of the deviator (a x + b y, c x + d y), typed by the roots of a cubic form as the thesis does.
+UmbilicType type_of_linear_field(double a, double b, double c, double d);
+UmbilicType type_of_face(const WorkMesh& mesh, const DirectionField& field, Index face);
 /// Index of the field around a face, times two: edge rotations and holonomy.
 int half_turns_of(const WorkMesh& mesh, const DirectionField& field, Index face);
 

@@ -13,6 +13,8 @@
 #include "core/assert.h"
 #include "core/parallel.h"
 #include "core/triangle_tree.h"
+#include "remeshing/cancel_umbilics.h"
+#include "remeshing/isotropic.h"
 #include "remeshing/mend.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
@@ -71,6 +73,7 @@ struct Draft {
     std::vector<Index> open;  ///< faces that are no polygons, but have the input's triangles
     CoarseMesh polygons;
     PolygonCounts counts;
+    std::size_t samples = 0;    ///< that polygons are triangulated around
     std::vector<Point3> flaws;  ///< places that no refinement has mended
 
     Layout layout() const { return {network, graph, faces, nodes, merged, open}; }
@@ -100,6 +103,7 @@ private:
     std::vector<Index> open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const;
     void refine(const Flaws& flaws, const Draft& draft, const Spacing& spacing);
     void merge_ends(Draft& draft, const Spacing& spacing) const;
+    void add_samples(Draft& draft, const Spacing& spacing) const;
     std::vector<Index> crowded_vertices(const CoarseMesh& mesh) const;
     CoarseMesh fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const;
     double count_of(const Draft& draft) const;
@@ -164,6 +168,7 @@ SpacingRule Remesher::rule_of(double error) const {
     rule.isotropy = options_.isotropy;
     rule.transfer = options_.transfer;
     rule.balance = balance_;
+    if (options_.isotropic_samples == IsotropicSamples::all) rule.near_umbilics = 0.8;
     return rule;
 }
 
@@ -192,14 +197,21 @@ bool Remesher::prepare() {
     double length = 5.0 * mesh_.mean_edge;
     if (options_.smooth) length = options_.smooth->resolve(mesh_.diagonal);
     control_.report("smoothing", 0.2);
-    smooth_directions(mesh_, field_, length, control_);
+    if (options_.smoothing_method == SmoothingMethod::gaussian)
+        smooth_by_gaussian(mesh_, field_, length, control_);
+    else
+        smooth_directions(mesh_, field_, length, control_);
     watch_.stage("smoothing");
     RemeshStatistics& s = result_.statistics;
     s.smoothing = length;
+    const Spacing spacing = compute_spacing(mesh_, field_, rule_of(start_error(wanted_count())), {});
+    s.cancelled_pairs = cancel_umbilic_pairs(mesh_, spacing, field_, control_);
+    watch_.stage("umbilics");
     for (const FieldUmbilic& u : field_.umbilics) {
         s.wedges += u.half_turns > 0 ? 1 : 0;
         s.trisectors += u.half_turns < 0 ? 1 : 0;
         s.umbilic_half_turns += u.half_turns;
+        s.umbilics_typed_otherwise += u.typed_half_turns != u.half_turns ? 1 : 0;
     }
     return !control_.cancelled();
 }
@@ -312,6 +324,14 @@ void Remesher::merge_ends(Draft& draft, const Spacing& spacing) const {
         reach.push_back(share * least);
     }
     draft.merged = merge_line_ends(draft.polygons, reach, arrangement_rule(draft.error));
+
+/// Faces around isotropic samples become triangles.
+void Remesher::add_samples(Draft& d, const Spacing& spacing) const {
+    if (options_.isotropic_samples == IsotropicSamples::none) return;
+    SampleRule rule;
+    rule.error = 2.0 * d.error;
+    rule.everywhere = options_.isotropic_samples == IsotropicSamples::all;
+    d.samples = triangulate_around(choose_samples(d.graph, d.network, d.faces, field_, spacing, rule), d.polygons);
 }
 
 Draft Remesher::draft(double error) {
@@ -319,7 +339,7 @@ Draft Remesher::draft(double error) {
     for (int round = 0;; ++round) {
         const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
         watch_.stage("spacing");
-        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {}, {}};
+        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {}, 0, {}};
         watch_.stage("lines");
         ++result_.statistics.rounds;
         d.graph = build_graph(d.network, arrangement_rule(error));
@@ -330,6 +350,7 @@ Draft Remesher::draft(double error) {
         if (flaws.empty()) {
             d.polygons = make_polygons(d.graph, d.faces, d.open, d.counts, d.nodes);
             merge_ends(d, spacing);
+            add_samples(d, spacing);
             // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
             for (int fans = 0; fans < 3; ++fans) {
                 const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
@@ -588,6 +609,7 @@ void Remesher::describe_polygons() {
     RemeshStatistics& s = result_.statistics;
     s.spacing_error = best_->error;
     s.t_nodes = best_->counts.t_nodes;
+    s.isotropic_samples = best_->samples;
     const double polygons = static_cast<double>(std::max<std::size_t>(best_->counts.polygons, 1));
     s.quad_share_with_t = static_cast<double>(best_->counts.quads_with_t) / polygons;
     s.quad_share_without_t = static_cast<double>(best_->counts.quads_without_t) / polygons;

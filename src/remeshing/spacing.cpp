@@ -82,8 +82,19 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
         spacing.at[along_max][w] = rule.balance * chord_of(half * high + (1.0 - half) * low, largest, rule);
         spacing.at[along_min][w] = chord_of(half * low + (1.0 - half) * high, largest, rule) / rule.balance;
     }
+    spacing.curved.resize(mesh.wedge_count());
+    for (Index w = 0; w < mesh.wedge_count(); ++w) {
+        const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
+        spacing.curved[w] = std::max(spacing.at[0][w], spacing.at[1][w]) < 0.999 * largest;
+    }
     for (std::size_t family = 0; family < 2; ++family) {
         const std::vector<double> raw = spacing.at[family];
+        if (rule.near_umbilics < 1.0)
+            for (const FieldUmbilic& u : field.umbilics)
+                for (Index c = 3 * u.face; c < 3 * u.face + 3; ++c) {
+                    const Index w = mesh.wedges[c];
+                    spacing.at[family][w] = rule.near_umbilics * raw[w];
+                }
         for (Index w = 0; w < caps.size(); ++w)
             if (caps[w] > 0.0) spacing.at[family][w] = std::min(spacing.at[family][w], caps[w]);
         limit_growth(mesh, spacing.at[family], rule.growth);

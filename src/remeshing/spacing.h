@@ -10,6 +10,7 @@ struct SpacingRule {
     double transfer = 0.5;
     double largest = 0.35;  ///< in diagonals of the component: where curvature vanishes there need not be lines
     double balance = 1.0;   ///< above 1: fewer lines along k_max, more along k_min
+    double near_umbilics = 1.0;  ///< there, spacing is this part of what it would be (the thesis: shorter)
     double growth = 0.7;    ///< spacing grows by at most this much per length: curvature is not constant over a gap
 };
 
@@ -18,6 +19,7 @@ struct Spacing {
     std::array<std::vector<double>, 2> at;
     /// Whether curvature asks for lines at all, per wedge: in flat parts nothing is sown.
     std::array<std::vector<bool>, 2> wanted;
+    std::vector<bool> curved;  ///< per wedge: not flat
 };
 
 /// Equation 4.6: the chord of a circle of curvature k with sagitta e; `largest` where it would be longer.
