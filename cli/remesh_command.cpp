@@ -24,7 +24,7 @@ struct RemeshArguments {
     FileArgument input, output, lines;
     RemeshOptions options;
     frontend::OutputOptions output_options;
-    std::string features;
+    std::string features, guides;
     bool no_placement = false, no_verify = false;
 };
 
@@ -122,9 +122,13 @@ void verify(Session& session, const RemeshArguments& arguments, const RemeshResu
     options.feature_angle_radians = arguments.options.feature_angle_radians;
     options.features = arguments.options.features;
     if (arguments.options.subdivide == 0) options.error = arguments.options.error;
+    const WeldedSurface welded = weld_surface(input);  // what the result is a result of
+    for (Edge& edge : options.features)
+        for (VertexId& v : edge)
+            if (index_of(v) < welded.numbers.size()) v = welded.numbers[index_of(v)];
     const SurfaceCheck check = session.timed("check", [&] {
         const GracefulScope graceful;
-        return check_surface(result.mesh, make_polygon_mesh(input), options, session.control());
+        return check_surface(result.mesh, make_polygon_mesh(welded.mesh), options, session.control());
     });
     session.report()["check"] = to_json(check);
     if (interrupt_flag() || check.outcome == Outcome::cancelled) return;
@@ -155,6 +159,8 @@ ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     if (!arguments.features.empty())
         for (const Edge& edge : read_edges(arguments.features, document.complex.positions.size()))
             arguments.options.features.push_back(edge);
+    if (!arguments.guides.empty())
+        arguments.options.guides = read_edges(arguments.guides, document.complex.positions.size());
     session.report()["options"] = to_json(frontend::remesh_options(), arguments.options, 0.0);
     session.report()["options"]["placement"] = arguments.options.placement;
     session.report()["options"]["verify"] = !arguments.no_verify;
@@ -205,6 +211,10 @@ void add_remesh_command(CLI::App& app, Action& action) {
     command
         ->add_option("--features", arguments->features,
                      "creases, whatever their angle: a file with two vertex numbers a line, from 1")
+        ->type_name("FILE");
+    command
+        ->add_option("--guides", arguments->guides,
+                     "edges of the input that lines follow without being creases: a file like that of --features")
         ->type_name("FILE");
     command->add_option("--lines", arguments->lines.path, "also write lines and umbilics (.vtu, .msh)")
         ->type_name("FILE");

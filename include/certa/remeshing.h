@@ -44,9 +44,11 @@ struct RemeshOptions {
     double isotropy = 0.0;                        ///< rho of the thesis, in [0, 1]: 0 follows both curvatures, 1 none
     double feature_angle_radians = 0.6981;        ///< an edge is a crease above this angle between its faces' normals
     std::vector<Edge> features;                   ///< edges of the input that are creases whatever their angle
+    std::vector<Edge> guides;                     ///< edges of the input that lines follow without being creases
     std::optional<Length> smooth = std::nullopt;  ///< length over which directions are smoothed; chosen when empty
     SmoothingMethod smoothing_method = SmoothingMethod::screened;
-    double transfer = 0.5;  ///< lines per length grow like |k|^transfer; 0.5 is the thesis's
+    double transfer = 0.5;            ///< lines per length grow like |k|^transfer; 0.5 is the thesis's
+    bool hyperbolic_spacing = false;  ///< sqrt 2 wider where curvatures have opposite signs
     IsotropicSamples isotropic_samples = IsotropicSamples::needed;
     RemeshOutput output = RemeshOutput::quad_dominant;
     std::uint64_t max_degree = 0;  ///< polygons: at most so many corners; 0: any number
@@ -73,6 +75,7 @@ struct RemeshStatistics {
     std::size_t input_vertices = 0, input_triangles = 0, components = 0;
     std::int64_t euler_characteristic = 0;
     std::size_t boundary_loops = 0, feature_edges = 0, feature_curves = 0, corners = 0;
+    std::size_t merged_points = 0;  ///< that coincide with others
     std::size_t unused_vertices = 0, degenerate_triangles = 0, flipped_triangles = 0, non_manifold_edges = 0;
     std::size_t split_vertices = 0;  ///< where several sheets met in one vertex of the input
     std::size_t wedges = 0, trisectors = 0;
@@ -87,7 +90,9 @@ struct RemeshStatistics {
     /// Where polygons would turn away, meet or be too far, triangles of the input stand: regions of these, and
     /// triangles.
     std::size_t mended_regions = 0, mended_triangles = 0;
-    std::size_t cut_faces = 0;    ///< between lines that are triangles, so that every way to fill them keeps the error
+    std::size_t cut_faces = 0;  ///< between lines that are triangles, so that every way to fill them keeps the error
+    /// Subdivision: vertices held back nearer to their polygon, so that nothing folds or meets; polygons that still do.
+    std::size_t held_vertices = 0, broken_polygons = 0;
     double distance_bound = 0.0;  ///< where an error was asked for: proved, both ways, in the input's unit
     std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0;
     std::size_t t_nodes = 0;            ///< polygons' corners without a turn, before they became quads and triangles
@@ -107,6 +112,17 @@ struct RemeshResult {
     std::vector<Umbilic> umbilics;
     RemeshStatistics statistics;
 };
+
+/// A surface whose equal points are one.
+struct WeldedSurface {
+    TriangleMesh mesh;
+    std::vector<VertexId> numbers;  ///< per point of the input: its number in the mesh
+    std::size_t merged = 0;         ///< points that are named no more
+};
+
+/// Merges equal points where that joins triangles, as `remesh` does, so that its result can be compared with a soup:
+/// elsewhere the mesh stays as it is. Points keep their numbers; triangles that name a point twice then are left out.
+WeldedSurface weld_surface(const TriangleMesh& mesh);
 
 /// Polygons along lines of curvature.
 ///

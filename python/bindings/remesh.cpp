@@ -25,7 +25,11 @@ RemeshRun remesh_and_check(const MeshDocument& document, RemeshOptions options, 
     promises.feature_angle_radians = options.feature_angle_radians;
     promises.features = options.features;
     if (options.subdivide == 0) promises.error = options.error;  // subdivision smooths: no distance is promised then
-    finished.check = check_surface(finished.result.mesh, make_polygon_mesh(finished.input.mesh), promises, control);
+    const WeldedSurface welded = weld_surface(finished.input.mesh);  // what the result is a result of
+    for (Edge& edge : promises.features)
+        for (VertexId& v : edge)
+            if (index_of(v) < welded.numbers.size()) v = welded.numbers[index_of(v)];
+    finished.check = check_surface(finished.result.mesh, make_polygon_mesh(welded.mesh), promises, control);
     return finished;
 }
 
@@ -36,14 +40,16 @@ py::list lines_to_python(std::vector<CurvatureLine>&& lines) {
     return out;
 }
 
-py::dict remesh_to_python(const py::object& object, const py::dict& given, const Integers& features, bool placement,
-                          bool lines, bool verify, const py::object& progress, unsigned threads) {
+py::dict remesh_to_python(const py::object& object, const py::dict& given, const Integers& features,
+                          const Integers& guides, bool placement, bool lines, bool verify, const py::object& progress,
+                          unsigned threads) {
     RemeshOptions options;
     set_options(frontend::remesh_options(), options, given);
     options.placement = placement;
     options.lines = lines;
     MeshDocument document = document_from(object);
     options.features = elements_from<Edge>(features, ElementKind::edge, document.complex.positions.size());
+    options.guides = elements_from<Edge>(guides, ElementKind::edge, document.complex.positions.size());
     RemeshRun finished =
         run({progress, threads}, [document = std::move(document), options, verify](const RunControl& control) {
             return remesh_and_check(document, options, verify, control);

@@ -217,6 +217,7 @@ def remesh(
     /,
     *,
     features: Optional[ArrayLike] = None,
+    guides: Optional[ArrayLike] = None,
     placement: bool = True,
     lines: bool = False,
     verify: bool = True,
@@ -233,6 +234,8 @@ def remesh(
     mesh, mesh_faces : see the package's help; the option `faces` is the number of faces asked for
     features : (m, 2) indices, optional
         edges that are creases, whatever their angle
+    guides : (m, 2) indices, optional
+        edges that lines follow without being creases
     {options}
     placement : bool, default True
         move vertices to where the error is least
@@ -247,8 +250,9 @@ def remesh(
     """
     document = as_document(mesh, mesh_faces)
     edges = _inputs.elements(() if features is None else features, 2, "features")
+    followed = _inputs.elements(() if guides is None else guides, 2, "guides")
     values = _certa.remesh(
-        document, options, edges, bool(placement), bool(lines), bool(verify), *watch(progress, threads)
+        document, options, edges, followed, bool(placement), bool(lines), bool(verify), *watch(progress, threads)
     )
     values["lines"] = [CurvatureLine(*line) for line in values["lines"]]
     values["umbilics"] = [Umbilic(*umbilic) for umbilic in values["umbilics"]]

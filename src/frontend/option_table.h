@@ -87,7 +87,8 @@ struct MemberOf<CurvatureOptions> {
 };
 template <>
 struct MemberOf<RemeshOptions> {
-    using type = std::variant<double RemeshOptions::*, Choice<RemeshOptions>, Spelled<RemeshOptions>>;
+    using type =
+        std::variant<bool RemeshOptions::*, double RemeshOptions::*, Choice<RemeshOptions>, Spelled<RemeshOptions>>;
 };
 template <>
 struct MemberOf<SurfaceCheckOptions> {

@@ -100,6 +100,11 @@ constexpr std::array remesh_table{
                           &RemeshOptions::transfer,
                           {0.0, 2.0, false, false},
                           "density of lines goes like this power of curvature"},
+    Option<RemeshOptions>{"hyperbolic_spacing",
+                          "hyperbolic-spacing",
+                          &RemeshOptions::hyperbolic_spacing,
+                          {},
+                          "lines farther apart by the root of 2 where the surface is a saddle"},
     Option<RemeshOptions>{
         "isotropic_samples",
         "isotropic-samples",

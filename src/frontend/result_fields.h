@@ -77,6 +77,8 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("mended_regions", s.mended_regions);
     put("mended_triangles", s.mended_triangles);
     put("cut_faces", s.cut_faces);
+    put("held_vertices", s.held_vertices);
+    put("broken_polygons", s.broken_polygons);
     put("distance_bound", s.distance_bound);
     put("vertices", s.vertices);
     put("faces", s.faces);
@@ -85,6 +87,7 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("t_nodes", s.t_nodes);
     put("quad_share_with_t", s.quad_share_with_t);
     put("quad_share_without_t", s.quad_share_without_t);
+    put("merged_points", s.merged_points);
     put("cancelled_pairs", s.cancelled_pairs);
     put("umbilics_typed_otherwise", s.umbilics_typed_otherwise);
     put("isotropic_samples", s.isotropic_samples);

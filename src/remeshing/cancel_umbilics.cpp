@@ -167,7 +167,8 @@ std::vector<Index> PairCanceller::disk_around(const std::vector<Index>& wedges, 
         const auto [d, w] = queue.top();
         queue.pop();
         if (d > reached[w]) continue;
-        if (mesh_.wedge_closed[w]) disk.push_back(w);
+        const bool is_guided = !field_.guided.empty() && field_.guided[w] != not_guided;
+        if (mesh_.wedge_closed[w] && !is_guided) disk.push_back(w);
         visit_neighbours(w, [&, d = d](Index other, double length) {
             if (d + length > radius) return;
             const auto found = reached.find(other);

@@ -10,6 +10,9 @@ namespace certa::remeshing {
 /// The families of lines: along the direction of k_max, along that of k_min.
 enum Family : std::uint8_t { along_max = 0, along_min = 1 };
 
+/// In place of a family.
+constexpr std::uint8_t not_guided = 2;
+
 /// A triangle around which the directions turn.
 struct FieldUmbilic {
     Index face = no_index;
@@ -29,8 +32,9 @@ struct DirectionField {
     std::vector<Complex> squares;       ///< smoothed
     std::vector<Complex> starts, ends;  ///< per half-edge
     std::vector<FieldUmbilic> umbilics;
-    double smoothing = 0.0;  ///< length, in the input's unit
-    double noise = 0.0;      ///< sigma: differences of curvature below this say nothing
+    std::vector<std::uint8_t> guided;  ///< per wedge: the family that follows a guide there, or not_guided; or empty
+    double smoothing = 0.0;            ///< length, in the input's unit
+    double noise = 0.0;                ///< sigma: differences of curvature below this say nothing
 
     /// The squared direction of k_max at t in [0, 1] of the half-edge, relative to it.
     Complex at(Index halfedge, double t) const { return (1.0 - t) * starts[halfedge] + t * ends[halfedge]; }

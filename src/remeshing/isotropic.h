@@ -69,8 +69,8 @@ std::vector<IsotropicSample> choose_samples(const Graph& graph, const Network& n
                                             const std::vector<std::vector<Index>>& faces, const DirectionField& field,
                                             const Spacing& spacing, const SampleRule& rule);
 
-/// The polygon of a face (its parent) becomes triangles around the samples there. A polygon that its first sample does not see whole stays.
-/// Returns how many samples are vertices now.
+/// The polygon of a face (its parent) becomes triangles around the samples there. A polygon that its first sample does
+/// not see whole stays. Returns how many samples are vertices now.
 std::size_t triangulate_around(const std::vector<IsotropicSample>& samples, CoarseMesh& polygons);
 
 }  // namespace certa::remeshing

@@ -79,8 +79,11 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
     for (Index w = 0; w < mesh.wedge_count(); ++w) {
         const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
         const double low = std::abs(field.k_min[w]), high = std::abs(field.k_max[w]);
-        spacing.at[along_max][w] = rule.balance * chord_of(half * high + (1.0 - half) * low, largest, rule);
-        spacing.at[along_min][w] = chord_of(half * low + (1.0 - half) * high, largest, rule) / rule.balance;
+        const double wider = field.k_min[w] * field.k_max[w] < 0.0 ? rule.hyperbolic : 1.0;
+        const double across_max = chord_of(half * high + (1.0 - half) * low, largest, rule);
+        const double across_min = chord_of(half * low + (1.0 - half) * high, largest, rule);
+        spacing.at[along_max][w] = rule.balance * std::min(largest, wider * across_max);
+        spacing.at[along_min][w] = std::min(largest, wider * across_min) / rule.balance;
     }
     spacing.curved.resize(mesh.wedge_count());
     for (Index w = 0; w < mesh.wedge_count(); ++w) {
@@ -102,7 +105,8 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
         for (Index w = 0; w < mesh.wedge_count(); ++w) {
             const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
             spacing.wanted[family][w] = raw[w] < 0.999 * largest && raw[w] < 4.0 * spacing.at[family][w];
-            if (!caps.empty() && caps[w] > 0.0) spacing.wanted[family][w] = true;
+            const bool is_guided = !field.guided.empty() && field.guided[w] == family;
+            if (is_guided || (!caps.empty() && caps[w] > 0.0)) spacing.wanted[family][w] = true;
         }
     }
     return spacing;

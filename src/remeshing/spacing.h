@@ -8,10 +8,11 @@ struct SpacingRule {
     double error = 0.0;     ///< epsilon of equation 4.6
     double isotropy = 0.0;  ///< rho
     double transfer = 0.5;
-    double largest = 0.35;  ///< in diagonals of the component: where curvature vanishes there need not be lines
-    double balance = 1.0;   ///< above 1: fewer lines along k_max, more along k_min
+    double hyperbolic = 1.0;     ///< where curvatures have opposite signs, spacing is this much wider
+    double largest = 0.35;       ///< in diagonals of the component: where curvature vanishes there need not be lines
+    double balance = 1.0;        ///< above 1: fewer lines along k_max, more along k_min
     double near_umbilics = 1.0;  ///< there, spacing is this part of what it would be (the thesis: shorter)
-    double growth = 0.7;    ///< spacing grows by at most this much per length: curvature is not constant over a gap
+    double growth = 0.7;  ///< spacing grows by at most this much per length: curvature is not constant over a gap
 };
 
 /// Distance between neighbouring lines of each family, per wedge.

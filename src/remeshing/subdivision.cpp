@@ -133,10 +133,10 @@ void average(CoarseMesh& mesh) {
 
 }  // namespace
 
-CoarseMesh subdivide(const CoarseMesh& mesh) {
+CoarseMesh subdivide(const CoarseMesh& mesh, bool smooth) {
     Sides sides = find_sides(mesh);
     CoarseMesh fine = split(mesh, sides);
-    average(fine);
+    if (smooth) average(fine);
     return fine;
 }
 

@@ -56,6 +56,7 @@ public:
 
     void run() {
         add_features();
+        seed_guides();
         seed_umbilics();
         drain();
         fill_gaps();
@@ -89,6 +90,7 @@ private:
     double along_halfedge(Index h, double t) const { return mesh_.along(h) ? t : 1.0 - t; }
 
     void add_features();
+    void seed_guides();
     void seed_umbilics();
     void push_seed(Index edge, double t, double priority, double least, Index only_into = no_index);
     void seed_level_set();
@@ -147,6 +149,22 @@ void FamilyTracer::add_features() {
     proximity_.spread();
     ++line_number_;
     seed_level_set();
+}
+
+/// Beside vertices of guides, before everything else: on the edge that is crossed most squarely.
+void FamilyTracer::seed_guides() {
+    for (Index w = 0; w < field_.guided.size(); ++w) {
+        if (field_.guided[w] != family_) continue;
+        Index c = mesh_.wedge_first[w], best = no_index;
+        const Index first = c;
+        double best_sine = 0.5;
+        do {
+            const double sine = std::abs(direction(c, 0.02).imag());
+            if (!mesh_.is_feature(c) && sine > best_sine) best_sine = sine, best = c;
+            c = mesh_.next_corner(c);
+        } while (c != no_index && c != first);
+        if (best != no_index) push_seed(mesh_.edges[best], along_halfedge(best, 0.02), -2e9, 0.3);
+    }
 }
 
 /// Where the field on the triangle's edges points at the umbilic: one line per sector.

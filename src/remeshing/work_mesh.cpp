@@ -38,7 +38,8 @@ void check_input(const TriangleMesh& mesh) {
         throw InputError({{DefectKind::empty_input, {}, {}, "there are no triangles: nothing to remesh"}});
 }
 
-/// Per input vertex: the first vertex with the same coordinates.
+}  // namespace
+
 std::vector<Index> merge_points(const std::vector<Point3>& points) {
     std::vector<Index> order(points.size()), first(points.size());
     std::iota(order.begin(), order.end(), 0U);
@@ -52,6 +53,8 @@ std::vector<Index> merge_points(const std::vector<Point3>& points) {
     return first;
 }
 
+namespace {
+
 /// Faces without repeated corners and without repetitions of each other.
 void take_faces(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
     const std::vector<Index> first = merge_points(mesh.positions);
@@ -60,6 +63,15 @@ void take_faces(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& o
             throw InputError(
                 {{DefectKind::index_out_of_range, {}, {}, "a tagged edge names a vertex that is not there"}});
         work.tagged.insert(pair_key(first[index_of(edge[0])], first[index_of(edge[1])]));
+    }
+    for (std::size_t i = 0; i < options.guides.size(); ++i) {
+        const auto [a, b] = options.guides[i];
+        if (index_of(a) >= first.size() || index_of(b) >= first.size())
+            throw InputError({{DefectKind::index_out_of_range,
+                               {},
+                               {},
+                               "guide " + std::to_string(i + 1) + " names a vertex that is not there"}});
+        work.guides.insert(pair_key(first[index_of(a)], first[index_of(b)]));
     }
     std::vector<std::array<Index, 4>> sorted;
     sorted.reserve(mesh.triangles.size());
@@ -94,7 +106,11 @@ void take_faces(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& o
         work.faces.push_back(f);
         work.face_sources.push_back(t);
     }
-    statistics.unused_vertices = mesh.positions.size() - work.points.size();
+    for (Index v = 0; v < first.size(); ++v) statistics.merged_points += first[v] != v ? 1 : 0;
+    statistics.unused_vertices = mesh.positions.size() - work.points.size() - statistics.merged_points;
+    if (statistics.merged_points > 0)
+        statistics.notes.push_back(std::to_string(statistics.merged_points) +
+                                   " points of the input coincide with others and were merged with them");
 }
 
 /// Half-edges sorted by their ends: groups of more than one meet in an edge.
@@ -218,6 +234,30 @@ void number_edges(WorkMesh& work) {
     }
 }
 
+/// Which edges are guides. Those that are no edges of the input are refused.
+void find_guides(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& options) {
+    if (options.guides.empty()) return;
+    const std::vector<Index> first = merge_points(mesh.positions);
+    std::unordered_set<std::uint64_t> there;
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i)
+            there.insert(pair_key(first[index_of(t[i])], first[index_of(t[(i + 1) % 3])]));
+    for (std::size_t i = 0; i < options.guides.size(); ++i) {
+        const auto [a, b] = options.guides[i];
+        if (!there.contains(pair_key(first[index_of(a)], first[index_of(b)])))
+            refuse(DefectKind::index_out_of_range, ElementKind::vertex, index_of(a), mesh.positions[index_of(a)],
+                   "guide " + std::to_string(i + 1) + " joins vertices " + std::to_string(index_of(a) + 1ULL) +
+                       " and " + std::to_string(index_of(b) + 1ULL) +
+                       ", which share no edge: guides run along edges of the input");
+    }
+    work.is_guide.resize(work.edge_halfedges.size());
+    for (Index e = 0; e < work.is_guide.size(); ++e) {
+        const Index h = work.edge_halfedges[e];
+        work.is_guide[e] =
+            work.guides.contains(pair_key(work.point_sources[work.start_of(h)], work.point_sources[work.end_of(h)]));
+    }
+}
+
 void find_components(WorkMesh& work) {
     core::UnionFind sets(work.faces.size());
     for (Index h = 0; h < work.opposites.size(); ++h)
@@ -329,10 +369,11 @@ void split_long_edges(WorkMesh& work, double longest, Index input_vertices) {
             work.points.push_back(middle);
             const Index source = input_vertices + m, sa = work.point_sources[a], sb = work.point_sources[b];
             work.point_sources.push_back(source);
-            if (work.tagged.contains(pair_key(sa, sb))) {
-                work.tagged.insert(pair_key(sa, source));
-                work.tagged.insert(pair_key(source, sb));
-            }
+            for (auto* marked : {&work.tagged, &work.guides})
+                if (marked->contains(pair_key(sa, sb))) {
+                    marked->insert(pair_key(sa, source));
+                    marked->insert(pair_key(source, sb));
+                }
             return m;
         };
         bool any = false;
@@ -411,6 +452,7 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     pair_halfedges(work);
     split_vertices(work, statistics);
     number_edges(work);
+    find_guides(work, mesh, options);
     find_components(work);
     lay_out(work);
     work.diagonal = box_diagonal(work);

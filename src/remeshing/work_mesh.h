@@ -41,6 +41,8 @@ struct WorkMesh {
     std::vector<Point3> points;
     std::vector<Index> point_sources;  ///< vertex of the input; beyond those, points that were added on long edges
     std::unordered_set<std::uint64_t> tagged;  ///< edges that are creases: keys of their ends' point_sources
+    std::unordered_set<std::uint64_t> guides;  ///< the same for edges that lines shall follow
+    std::vector<bool> is_guide;                ///< per edge; empty where there are none
     std::vector<std::array<Index, 3>> faces;
     std::vector<Index> face_sources;    ///< triangle of the input
     std::vector<Index> opposites;       ///< per half-edge; no_index at the boundary
@@ -92,6 +94,9 @@ struct WorkMesh {
         return a + t * (b - a);
     }
 };
+
+/// Per point: the first one with the same coordinates.
+std::vector<Index> merge_points(const std::vector<Point3>& points);
 
 /// Checks, orients and connects the input, finds features and wedges (stage 1).
 ///

@@ -6,6 +6,7 @@ sanitizer makes impossible (limits on the address space).
 """
 
 import json
+import math
 import os
 import pty
 import re
@@ -486,6 +487,37 @@ class Chain(CommandTest):
         self.assertIn("delaunay", self.report(0, "conform", "b.obj", "--triangulate", "-o", "c.mesh")["proved"])
         self.assertIn("verified", self.expect(0, "check", "c.mesh", "--against", "b.obj", "--triangulate"))
         self.expect_no_strays("a.off", "b.obj", "c.mesh")
+
+
+class Remesh(CommandTest):
+    @staticmethod
+    def torus_soup():
+        """Every triangle with corners of its own, as in STL."""
+        def point(i, j):
+            u, v = math.pi * (i % 24) / 12, math.pi * (j % 12) / 6
+            return (2 + 0.7 * math.cos(v)) * math.cos(u), (2 + 0.7 * math.cos(v)) * math.sin(u), 0.7 * math.sin(v)
+
+        corners = []
+        for i in range(24):
+            for j in range(12):
+                square = point(i, j), point(i + 1, j), point(i + 1, j + 1), point(i, j + 1)
+                corners += [square[0], square[1], square[2], square[0], square[2], square[3]]
+        faces = "".join(f"3 {3 * t} {3 * t + 1} {3 * t + 2}\n" for t in range(len(corners) // 3))
+        points = "".join("%r %r %r\n" % p for p in corners)
+        return f"OFF\n{len(corners)} {len(corners) // 3} 0\n{points}{faces}"
+
+    @unittest.skipIf(SANITIZED, "remeshing is slow there")
+    def test_soups_are_merged_and_it_is_said(self):
+        self.write("soup.off", self.torus_soup())
+        report = self.report(0, "remesh", "soup.off", "--vertices", "120", "-o", "few.obj")
+        self.assertEqual(report["statistics"]["merged_points"], 24 * 12 * 6 - 24 * 12)
+        self.assertEqual(report["statistics"]["unused_vertices"], 0)
+        self.assertIn("topology", report["proved"])
+        self.assertTrue(any("merged" in note for note in report["statistics"]["notes"]))
+
+    def test_guides_must_be_edges(self):
+        self.write("guides.txt", "1 2\n1 99\n")
+        self.assertIn("guides.txt", self.expect(3, "remesh", "cube.off", "--guides", "guides.txt"))
 
 
 class Info(CommandTest):

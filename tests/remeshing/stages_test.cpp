@@ -28,8 +28,8 @@ TriangleMesh graph_of(std::uint32_t n, bool round, const Height& height) {
     for (std::uint32_t j = 0; j <= n; ++j)
         for (std::uint32_t i = 0; i <= n; ++i) {
             const bool inner_x = i > 0 && i<n, inner_y = j> 0 && j < n;
-            double x = -1.0 + (2.0 * i + (inner_x ? 0.6 * random.uniform() - 0.3 : 0.0)) / n;
-            double y = -1.0 + (2.0 * j + (inner_y && 2 * j != n ? 0.6 * random.uniform() - 0.3 : 0.0)) / n;
+            double x = -1.0 + (2.0 * i + (inner_x ? 0.3 * random.uniform() - 0.15 : 0.0)) / n;
+            double y = -1.0 + (2.0 * j + (inner_y && 2 * j != n ? 0.3 * random.uniform() - 0.15 : 0.0)) / n;
             if (round) {
                 const double u = x;
                 x *= std::sqrt(1.0 - 0.5 * y * y), y *= std::sqrt(1.0 - 0.5 * u * u);
@@ -255,6 +255,83 @@ TEST(Umbilics, OppositePairsThatAreNearAreCancelled) {
     EXPECT_LT(changed, squares.size() / 2);
     // And nothing is left to do.
     EXPECT_EQ(cancel_umbilic_pairs(p.mesh, spacing, p.field, {}), 0U);
+}
+
+/// Lines near a guide across the field run along it; far from it, and without it, they do not.
+TEST(Guides, AreFollowedByLinesNearby) {
+    const std::uint32_t n = 60;
+    const TriangleMesh saddle = graph_of(n, false, [](double x, double y) { return 0.3 * (x * x - y * y); });
+    RemeshOptions options;
+    options.vertices = 300;
+    options.placement = false;
+    options.lines = true;
+    // Lines of the saddle run along the axes; the guide is the diagonal, jittered as the mesh is.
+    const auto off_the_diagonal = [&](double& nearest, std::size_t& creases) {
+        const RemeshResult result = remesh(saddle, options);
+        EXPECT_EQ(result.outcome, Outcome::done);
+        double sum = 0.0, length = 0.0;
+        nearest = 1e300;
+        creases = result.statistics.feature_curves;
+        for (const bool maximum : {false, true}) {
+            double own = 0.0, all = 0.0;
+            for (const CurvatureLine& line : result.lines)
+                for (std::size_t i = 0; i + 1 < line.points.size() && line.maximum == maximum; ++i) {
+                    const Point3 a = line.points[i], d = line.points[i + 1] - a;
+                    if (std::abs(a.x - a.y) > 0.1 || std::abs(a.x) > 0.8) continue;
+                    own += std::hypot(d.x, d.y) *
+                           std::acos(std::min(1.0, std::abs(d.x + d.y) / std::sqrt(2.0) / std::hypot(d.x, d.y)));
+                    all += std::hypot(d.x, d.y);
+                }
+            if (all > 0.0) nearest = std::min(nearest, own / all * 180.0 / pi);
+            sum += own, length += all;
+        }
+        return sum / length * 180.0 / pi;
+    };
+    double with = 0.0, without = 0.0;
+    std::size_t creases = 0, creases_without = 0;
+    off_the_diagonal(without, creases_without);
+    for (std::uint32_t i = 4; i + 4 < n; ++i)
+        options.guides.push_back({VertexId{i * (n + 1) + i}, VertexId{(i + 1) * (n + 1) + i + 1}});
+    off_the_diagonal(with, creases);
+    std::printf("mean angle to the guide: %.2f degrees, %.2f without\n", with, without);
+    EXPECT_LT(with, 5.0);
+    EXPECT_GT(without, 40.0);
+    EXPECT_EQ(creases, creases_without);
+}
+
+TEST(Guides, MustBeEdges) {
+    RemeshOptions options;
+    options.guides.push_back({VertexId{0}, VertexId{6}});
+    const TriangleMesh box = generators::make_box(1.0, 1.0, 1.0);
+    std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
+    for (const Triangle& t : box.triangles)
+        for (std::size_t i = 0; i < 3; ++i) edges.insert({index_of(t[i]), index_of(t[(i + 1) % 3])});
+    for (std::uint32_t v = 1; v < 8; ++v)
+        if (!edges.contains({0, v}) && !edges.contains({v, 0})) options.guides[0][1] = VertexId{v};
+    EXPECT_THROW(remesh(box, options), InputError);
+    options.guides[0][1] = VertexId{99};
+    EXPECT_THROW(remesh(box, options), InputError);
+}
+
+TEST(Spacing, IsWiderInHyperbolicPartsOnDemand) {
+    const Prepared p = prepare(generators::make_torus(2.0, 0.7, 4000, 1), 3.0);
+    SpacingRule rule, wider;
+    rule.error = wider.error = 1e-3 * p.mesh.diagonal;
+    rule.growth = wider.growth = 1e9;  // point by point
+    wider.hyperbolic = std::sqrt(2.0);
+    const Spacing plain = compute_spacing(p.mesh, p.field, rule, {}),
+                  wide = compute_spacing(p.mesh, p.field, wider, {});
+    std::size_t saddles = 0, wrong = 0;
+    for (Index w = 0; w < p.mesh.wedge_count(); ++w) {
+        const Point3& q = p.mesh.points[p.mesh.wedge_vertices[w]];
+        const double inwards = 2.0 - std::hypot(q.x, q.y);  // K < 0 where positive
+        if (std::abs(inwards) < 0.2) continue;
+        saddles += inwards > 0.0 ? 1 : 0;
+        const double ratio = wide.at[along_min][w] / plain.at[along_min][w];
+        wrong += std::abs(ratio - (inwards > 0.0 ? std::sqrt(2.0) : 1.0)) > 1e-9 ? 1 : 0;
+    }
+    EXPECT_LT(wrong, p.mesh.wedge_count() / 100);
+    EXPECT_GT(saddles, 500U);
 }
 
 struct Arranged {

@@ -7,7 +7,9 @@
 
 #include "core/random.h"
 #include "core/vector3.h"
+#include "mesh/generators_surfaces.h"
 #include "remeshing/coarse_meshes.h"
+#include "remeshing/sound_subdivision.h"
 
 namespace certa::remeshing {
 namespace {
@@ -122,6 +124,31 @@ TEST(Subdivision, CreasesAreSplinesAndCornersStay) {
             const auto at_end = [](double x) { return x < 1e-15 || x > 1.0 - 1e-15; };
             EXPECT_GE(at_end(p.x) + at_end(p.y) + at_end(p.z), 2);
         }
+}
+
+/// Rough meshes fold when they are smoothed; held back they do not, and stay smooth elsewhere.
+TEST(Subdivision, NeitherFoldsNorMeetsItself) {
+    std::size_t broken_before = 0, held = 0, all = 0;
+    for (const std::uint64_t seed : {1U, 2U, 3U}) {
+        const TriangleMesh rough = generators::make_noisy(generators::make_icosphere(2), 0.3, seed);
+        CoarseMesh coarse;
+        for (const Point3& p : rough.positions) coarse.add_vertex(p, {});
+        for (const Triangle& t : rough.triangles)
+            coarse.add_polygon(std::array{index_of(t[0]), index_of(t[1]), index_of(t[2])});
+        const core::TriangleTree tree(rough.positions, rough.triangles);
+        const Judge judge{rough, tree, 2.0, !has_contact(rough, {})};
+        CoarseMesh smooth = subdivide(subdivide(coarse));
+        broken_before += find_damage(judge, smooth, {}).polygons.size();
+        SubdivisionReport report;
+        CoarseMesh sound = subdivide_soundly(coarse, 2, judge, report, {});
+        EXPECT_EQ(report.broken, 0U);
+        EXPECT_TRUE(find_damage(judge, sound, {}).polygons.empty());
+        EXPECT_EQ(sound.points.size(), smooth.points.size());
+        held += report.held, all += sound.points.size();
+    }
+    EXPECT_GT(broken_before, 0U);
+    EXPECT_GT(held, 0U);
+    EXPECT_LT(held, all / 2);
 }
 
 }  // namespace
