@@ -180,7 +180,8 @@ private:
         if (is_to_be_simplified(findings)) {
             const Frontier frontier(tree_, triangulation, growth);
             const double smallest = smallest_error(surface, tape_, Simplification{}.most_triangles);
-            if ((error_ ? *error_ : 0.75 * *hausdorff_) < smallest) refuse_error(smallest);
+            const double share = error_ ? 1 : 0.75;  // of the length, as simplify_to_distance has it
+            if (share * (error_ ? *error_ : *hausdorff_) < smallest) refuse_error(smallest / share);
             if (hausdorff_)
                 result_.hausdorff = simplify_to_distance(surface, frontier, tape_, *hausdorff_, control_);
             else if (auto simplified = simplify(surface, &frontier, tape_, {*error_}, control_))

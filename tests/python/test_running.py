@@ -63,7 +63,7 @@ LONG_JOBS = {
     "curvature": lambda: certa.curvature(*BALL, ball=0.5),
     "remesh": lambda: [certa.remesh(*BALL, vertices=5000) for _ in range(99)],
     "implicit": long_job,
-    "hausdorff": lambda: certa.implicit("x^2 + y^2 + z^2 - 1", hausdorff=1e-6),
+    "hausdorff": lambda: certa.implicit("x^2 + y^2 + z^2 - 1", hausdorff=1e-5),
     "check": lambda: [certa.check(BALL, against=(BALL[0] * 1.001, BALL[1])) for _ in range(99)],
     "view": lambda: [certa.view(BALL) for _ in range(999)],
 }
