@@ -15,6 +15,7 @@
 #include "core/parallel.h"
 #include "core/triangle_tree.h"
 #include "remeshing/cancel_umbilics.h"
+#include "remeshing/crowded.h"
 #include "remeshing/guides.h"
 #include "remeshing/isotropic.h"
 #include "remeshing/mend.h"
@@ -108,8 +109,6 @@ private:
     void refine(const Flaws& flaws, const Draft& draft, const Spacing& spacing);
     void merge_ends(Draft& draft, const Spacing& spacing) const;
     void add_samples(Draft& draft, const Spacing& spacing) const;
-    std::vector<Index> crowded_vertices(const CoarseMesh& mesh) const;
-    CoarseMesh fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const;
     double count_of(const Draft& draft) const;
     double wanted_count() const {
         return static_cast<double>(options_.vertices ? *options_.vertices : options_.faces.value_or(0));
@@ -264,47 +263,6 @@ void Remesher::refine(const Flaws& flaws, const Draft& draft, const Spacing& spa
         }
 }
 
-/// Edges of the mesh as it will be written that more than two polygons share, or one twice: their ends.
-std::vector<Index> Remesher::crowded_vertices(const CoarseMesh& mesh) const {
-    std::vector<std::array<Index, 2>> sides;
-    for (std::size_t i = 0; i < mesh.polygon_count(); ++i) {
-        const auto ring = mesh.polygon(i);
-        for (std::size_t k = 0; k < ring.size(); ++k) sides.push_back({ring[k], ring[(k + 1) % ring.size()]});
-    }
-    std::sort(sides.begin(), sides.end());
-    std::vector<Index> crowded;
-    for (std::size_t i = 1; i < sides.size(); ++i)
-        if (sides[i] == sides[i - 1]) crowded.insert(crowded.end(), sides[i].begin(), sides[i].end());
-    return crowded;
-}
-
-/// Polygons in which two vertices of a crowded edge are not neighbours become triangles around a new vertex.
-CoarseMesh Remesher::fan_out(const CoarseMesh& mesh, const std::vector<Index>& crowded) const {
-    CoarseMesh out = mesh.without_polygons();
-    for (std::size_t i = 0; i < mesh.polygon_count(); ++i) {
-        const auto ring = mesh.polygon(i);
-        const std::size_t n = ring.size();
-        bool fan = false;
-        for (std::size_t k = 0; k + 1 < crowded.size() && !fan; k += 2) {
-            const auto a = std::find(ring.begin(), ring.end(), crowded[k]);
-            const auto b = std::find(ring.begin(), ring.end(), crowded[k + 1]);
-            if (a == ring.end() || b == ring.end()) continue;
-            const std::size_t gap = static_cast<std::size_t>(std::abs(a - b));
-            fan = gap != 1 && gap + 1 != n;
-        }
-        if (!fan) {
-            out.add_polygon(ring, mesh.parent(i));
-            continue;
-        }
-        Point3 middle;
-        for (const Index v : ring) middle = middle + (1.0 / static_cast<double>(n)) * mesh.points[v];
-        const Index center = out.add_vertex(middle, mesh.places[ring[0]]);
-        for (std::size_t k = 0; k < n; ++k)
-            out.add_polygon(std::array{ring[k], ring[(k + 1) % n], center}, mesh.parent(i));
-    }
-    return out;
-}
-
 /// Faces that will not be polygons but triangles of the input: in flat patches, which no line crosses, what is no disk;
 /// with `all`, whatever is none. They are no flaws any more.
 std::vector<Index> Remesher::open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const {
@@ -336,472 +294,468 @@ void Remesher::merge_ends(Draft& draft, const Spacing& spacing) const {
         reach.push_back(share * least);
     }
     draft.merged = merge_line_ends(draft.polygons, reach, arrangement_rule(draft.error));
+}
 
-    /// Faces around isotropic samples become triangles.
-    void Remesher::add_samples(Draft & d, const Spacing& spacing) const {
-        if (options_.isotropic_samples == IsotropicSamples::none) return;
-        SampleRule rule;
-        rule.error = 2.0 * d.error;
-        rule.everywhere = options_.isotropic_samples == IsotropicSamples::all;
-        d.samples = triangulate_around(choose_samples(d.graph, d.network, d.faces, field_, spacing, rule), d.polygons);
-    }
+/// Faces around isotropic samples become triangles.
+void Remesher::add_samples(Draft& d, const Spacing& spacing) const {
+    if (options_.isotropic_samples == IsotropicSamples::none) return;
+    SampleRule rule;
+    rule.error = 2.0 * d.error;
+    rule.everywhere = options_.isotropic_samples == IsotropicSamples::all;
+    d.samples = triangulate_around(choose_samples(d.graph, d.network, d.faces, field_, spacing, rule), d.polygons);
+}
 
-    Draft Remesher::draft(double error) {
-        constexpr int patience = 4, most_rounds = 14;
-        for (int round = 0;; ++round) {
-            const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
-            watch_.stage("spacing");
-            Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {}, 0,
-                    {}};
-            watch_.stage("lines");
-            ++result_.statistics.rounds;
-            d.graph = build_graph(d.network, arrangement_rule(error));
-            simplify_graph(d.graph, d.network);
-            d.faces = d.graph.trace_faces(mesh_);
-            Flaws flaws = find_flaws(d.graph, d.network, d.faces);
-            d.open = open_faces(flaws, d, spacing, round >= patience);
-            if (flaws.empty()) {
-                d.polygons = make_polygons(d.graph, d.faces, d.open, d.counts, d.nodes);
-                merge_ends(d, spacing);
-                add_samples(d, spacing);
-                // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
-                for (int fans = 0; fans < 3; ++fans) {
-                    const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
-                    if (crowded.empty()) break;
-                    d.polygons = fan_out(d.polygons, crowded);
-                }
-            }
-            watch_.stage("arrangement");
-            if (flaws.empty() || control_.cancelled()) return d;
-            if (round == most_rounds) {
-                for (Index f = 0; f < mesh_.face_count() && d.flaws.empty(); ++f)
-                    if (std::binary_search(flaws.patches.begin(), flaws.patches.end(), mesh_.patches[f]))
-                        d.flaws.push_back(mesh_.points[mesh_.faces[f][0]]);
-                for (const Index f : flaws.faces) d.flaws.push_back(d.graph.nodes[d.graph.tail(d.faces[f][0])].point);
-                return d;
-            }
-            refine(flaws, d, spacing);
-        }
-    }
-
-    double Remesher::count_of(const Draft& draft) const {
-        if (!options_.faces) return static_cast<double>(draft.polygons.points.size() - draft.merged.size());
-        // Cutting into quads and triangles adds faces.
-        return static_cast<double>(options_.output == RemeshOutput::polygons
-                                       ? draft.polygons.polygon_count()
-                                       : make_quad_dominant(draft.polygons).polygon_count());
-    }
-
-    /// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps, then one family
-    /// gets more lines for fewer of the other.
-    void Remesher::search(double wanted) {
-        double best_miss = 1e300;
-        int networks = 0;
-        /// How far the count is off, as a logarithm; empty: near enough, or cancelled.
-        const auto attempt = [&](double error) -> std::optional<double> {
-            Draft d = draft(error);
-            if (control_.cancelled()) return std::nullopt;
-            ++networks;
-            const double off = std::log(std::max(count_of(d), 1.0) / wanted);
-            const bool whole = d.flaws.empty();
-            if (!best_ || (whole && std::abs(off) < best_miss)) {
-                best_miss = whole ? std::abs(off) : 1e300;
-                best_.emplace(std::move(d));
-            }
-            if (best_miss < (networks < 4 ? 0.025 : 0.045)) return std::nullopt;
-            return off;
-        };
-        trace_rule_ = {};
-        balance_ = 1.0;
-        const double start = start_error(wanted);
-        struct End {
-            double knob = 0.0, off = 0.0;
-        };
-        std::optional<End> many, few, last;
-        double error = start;
-        for (int round = 0; round < 6; ++round) {
-            const std::optional<double> off = attempt(error);
-            if (!off) return;
-            (*off > 0.0 ? many : few) = End{std::log(error), *off};
-            double step = *off;
-            if (last) step /= std::clamp((last->off - *off) / (std::log(error) - last->knob), 0.5, 1.5);
-            step = std::clamp(step, -1.2, 1.2);
-            last = End{std::log(error), *off};
-            if (many && few) {
-                const double part = std::clamp(many->off / (many->off - few->off), 0.15, 0.85);
-                step = many->knob + part * (few->knob - many->knob) - std::log(error);
-            }
-            error *= std::exp(step);
-        }
-        if (!many || !few) return;
-        error = std::exp(0.5 * (many->knob + few->knob));
-        double low = 0.62, high = 0.9;
-        for (const double first : {best_miss, 0.0, 0.0, 0.0}) {
-            trace_rule_.gap_above = first > 0.0 ? 0.75 : 0.5 * (low + high);
-            const std::optional<double> off = attempt(error);
-            if (!off) return;
-            (*off > 0.0 ? low : high) = trace_rule_.gap_above;
-        }
-        trace_rule_.gap_above = 0.75;
-        for (const double balance : {1.02, 0.98, 1.05, 0.95}) {
-            balance_ = balance;
-            if (!attempt(best_->error)) return;
-        }
-    }
-
-    /// Caps the spacing around vertices and triangle centres of either surface that are farther than `limit` from the
-    /// other. Returns the share of the input's vertices that are.
-    double Remesher::refine_where_far(double error, double limit) {
+Draft Remesher::draft(double error) {
+    constexpr int patience = 4, most_rounds = 14;
+    for (int round = 0;; ++round) {
         const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
-        caps_.resize(mesh_.wedge_count(), 0.0);
-        const auto lower = [&](Index w) {
-            const double cap = 0.45 * std::min(spacing.at[0][w], spacing.at[1][w]);
-            if (caps_[w] == 0.0 || cap < caps_[w]) caps_[w] = cap;
-        };
-        const core::TriangleTree& input = *tree_;
-        const CoarseMesh triangles = make_triangles(filled_, input);
-        std::vector<Triangle> ids;
-        for (std::size_t i = 0; i < triangles.polygon_count(); ++i) {
-            const auto t = triangles.polygon(i);
-            ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
-            const Point3 &a = triangles.points[t[0]], &b = triangles.points[t[1]], &c = triangles.points[t[2]];
-            for (const Point3& p : {(1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
-                const core::NearestPoint nearest = input.find_nearest(p);
-                if (nearest.squared_distance <= limit * limit) continue;
-                for (Index k = 0; k < 3; ++k) lower(mesh_.wedges[3 * nearest.triangle + k]);
+        watch_.stage("spacing");
+        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {}, 0, {}};
+        watch_.stage("lines");
+        ++result_.statistics.rounds;
+        d.graph = build_graph(d.network, arrangement_rule(error));
+        simplify_graph(d.graph, d.network);
+        d.faces = d.graph.trace_faces(mesh_);
+        Flaws flaws = find_flaws(d.graph, d.network, d.faces);
+        d.open = open_faces(flaws, d, spacing, round >= patience);
+        if (flaws.empty()) {
+            d.polygons = make_polygons(d.graph, d.faces, d.open, d.counts, d.nodes);
+            merge_ends(d, spacing);
+            add_samples(d, spacing);
+            // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
+            for (int fans = 0; fans < 3; ++fans) {
+                const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
+                if (crowded.empty()) break;
+                d.polygons = fan_out(d.polygons, crowded);
             }
         }
-        const core::TriangleTree result(triangles.points, ids);
-        std::size_t far = 0;
-        for (Index w = 0; w < mesh_.wedge_count(); ++w) {
-            const Point3& p = mesh_.points[mesh_.wedge_vertices[w]];
-            if (result.find_nearest(p).squared_distance <= limit * limit) continue;
-            lower(w);
-            ++far;
+        watch_.stage("arrangement");
+        if (flaws.empty() || control_.cancelled()) return d;
+        if (round == most_rounds) {
+            for (Index f = 0; f < mesh_.face_count() && d.flaws.empty(); ++f)
+                if (std::binary_search(flaws.patches.begin(), flaws.patches.end(), mesh_.patches[f]))
+                    d.flaws.push_back(mesh_.points[mesh_.faces[f][0]]);
+            for (const Index f : flaws.faces) d.flaws.push_back(d.graph.nodes[d.graph.tail(d.faces[f][0])].point);
+            return d;
         }
-        return static_cast<double>(far) / static_cast<double>(mesh_.wedge_count());
+        refine(flaws, d, spacing);
     }
+}
 
-    /// The share of the placed triangles that are farther from the input than `limit`, and vertices of the input
-    /// likewise.
-    double Remesher::far_share(double limit) const {
-        const CoarseMesh triangles = make_triangles(filled_, *tree_);
-        std::vector<Triangle> ids;
-        std::size_t far = 0, looked = 0;
-        for (std::size_t i = 0; i < triangles.polygon_count(); ++i, ++looked) {
-            const auto t = triangles.polygon(i);
-            ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
-            const Point3 middle =
-                (1.0 / 3.0) * (triangles.points[t[0]] + triangles.points[t[1]] + triangles.points[t[2]]);
-            far += tree_->find_nearest(middle).squared_distance > limit * limit ? 1 : 0;
-        }
-        const core::TriangleTree result(triangles.points, ids);
-        std::size_t far_below = 0;
-        for (const Point3& p : mesh_.points)
-            far_below += result.find_nearest(p).squared_distance > limit * limit ? 1 : 0;
-        return std::max(static_cast<double>(far) / static_cast<double>(looked),
-                        static_cast<double>(far_below) / static_cast<double>(mesh_.points.size()));
-    }
+double Remesher::count_of(const Draft& draft) const {
+    if (!options_.faces) return static_cast<double>(draft.polygons.points.size() - draft.merged.size());
+    // Cutting into quads and triangles adds faces.
+    return static_cast<double>(options_.output == RemeshOutput::polygons
+                                   ? draft.polygons.polygon_count()
+                                   : make_quad_dominant(draft.polygons).polygon_count());
+}
 
-    /// The bound that is proved for the result as it stands, for every way to fill its polygons.
-    double Remesher::prove_distance() {
-        PolygonMesh input{input_.positions, {}, {0}};
-        for (const Triangle& t : input_.triangles) {
-            input.corners.insert(input.corners.end(), t.begin(), t.end());
-            input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
-        }
-        DistanceOptions options;
-        options.samples = 10000;
-        const SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
-        watch_.stage("certificate");
-        return result_.statistics.distance_bound = distance.hausdorff_bound;
-    }
-
-    /// One network, mended so that the error is kept; empty where that would be mending above all.
-    std::optional<Remesher::Attempt> Remesher::attempt_error(double most_far) {
-        const double wanted = wanted_error();
-        if (far_share(wanted) > most_far) return std::nullopt;
-        constexpr double tightness = 1.03;  // bounds are proved to within 2 %
-        CoarseMesh mesh = mended(placed_, wanted / tightness);
+/// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps, then one family
+/// gets more lines for fewer of the other.
+void Remesher::search(double wanted) {
+    double best_miss = 1e300;
+    int networks = 0;
+    /// How far the count is off, as a logarithm; empty: near enough, or cancelled.
+    const auto attempt = [&](double error) -> std::optional<double> {
+        Draft d = draft(error);
         if (control_.cancelled()) return std::nullopt;
-        emit(mesh);
-        if (prove_distance() > wanted) return std::nullopt;
-        return Attempt{std::move(*best_), std::move(mesh), result_.statistics};
+        ++networks;
+        const double off = std::log(std::max(count_of(d), 1.0) / wanted);
+        const bool whole = d.flaws.empty();
+        if (!best_ || (whole && std::abs(off) < best_miss)) {
+            best_miss = whole ? std::abs(off) : 1e300;
+            best_.emplace(std::move(d));
+        }
+        if (best_miss < (networks < 4 ? 0.025 : 0.045)) return std::nullopt;
+        return off;
+    };
+    trace_rule_ = {};
+    balance_ = 1.0;
+    const double start = start_error(wanted);
+    struct End {
+        double knob = 0.0, off = 0.0;
+    };
+    std::optional<End> many, few, last;
+    double error = start;
+    for (int round = 0; round < 6; ++round) {
+        const std::optional<double> off = attempt(error);
+        if (!off) return;
+        (*off > 0.0 ? many : few) = End{std::log(error), *off};
+        double step = *off;
+        if (last) step /= std::clamp((last->off - *off) / (std::log(error) - last->knob), 0.5, 1.5);
+        step = std::clamp(step, -1.2, 1.2);
+        last = End{std::log(error), *off};
+        if (many && few) {
+            const double part = std::clamp(many->off / (many->off - few->off), 0.15, 0.85);
+            step = many->knob + part * (few->knob - many->knob) - std::log(error);
+        }
+        error *= std::exp(step);
     }
-
-    /// Lines closer together until mending, which keeps the error by cutting and by triangles of the input, has little
-    /// to do. What has the fewest faces counts: whatever is mended has many.
-    void Remesher::meet_error() {
-        double error = start_error();
-        constexpr std::array<double, 6> most_far{0.002, 0.002, 0.002, 0.02, 0.02, 0.3};
-        std::optional<Attempt> kept;
-        for (const double far : most_far) {
-            best_.emplace(draft(error));
-            if (control_.cancelled()) return;
-            if (!finish()) break;
-            std::optional<Attempt> next = attempt_error(far);
-            if (control_.cancelled()) return;
-            if (next) {
-                const auto faces = [](const Attempt& attempt) { return double(attempt.mesh.polygon_count()); };
-                if (kept && faces(*next) > 0.98 * faces(*kept)) break;
-                kept.emplace(std::move(*next));
-                const RemeshStatistics& s = kept->statistics;
-                if (double(s.mended_triangles) < 0.05 * faces(*kept) && double(s.cut_faces) < 0.1 * faces(*kept)) break;
-            }
-            // Far in a few places: lines closer together there; far nearly everywhere: a smaller epsilon.
-            const double share = refine_where_far(error, 0.75 * wanted_error());
-            if (share > 0.1 || share == 0.0) error *= 0.7;
-        }
-        if (!kept) {
-            give_input_within_error();
-            return;
-        }
-        best_.emplace(std::move(kept->draft));
-        kept->statistics.stage_seconds = result_.statistics.stage_seconds;
-        kept->statistics.rounds = result_.statistics.rounds;
-        result_.statistics = std::move(kept->statistics);
-        emit(kept->mesh);
+    if (!many || !few) return;
+    error = std::exp(0.5 * (many->knob + few->knob));
+    double low = 0.62, high = 0.9;
+    for (const double first : {best_miss, 0.0, 0.0, 0.0}) {
+        trace_rule_.gap_above = first > 0.0 ? 0.75 : 0.5 * (low + high);
+        const std::optional<double> off = attempt(error);
+        if (!off) return;
+        (*off > 0.0 ? low : high) = trace_rule_.gap_above;
     }
-
-    /// Nothing else has helped: triangles of the input, as few as the error allows.
-    void Remesher::give_input_within_error() {
-        const double wanted = wanted_error();
-        for (const double part : {0.5, 0.2, 1e-4}) {
-            if (control_.cancelled()) return;
-            give_input(part * wanted);
-            if (prove_distance() <= wanted) return;
-        }
-        result_.outcome = Outcome::over_budget;
-        result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
-                                           std::to_string(result_.statistics.distance_bound));
+    trace_rule_.gap_above = 0.75;
+    for (const double balance : {1.02, 0.98, 1.05, 0.95}) {
+        balance_ = balance;
+        if (!attempt(best_->error)) return;
     }
+}
 
-    void Remesher::describe_lines() {
-        const Network& network = best_->network;
-        for (const Line& line : network.lines()) {
-            if (line.faces.empty()) continue;
-            result_.statistics.closed_lines += line.closed ? 1 : 0;
-            ++(line.family == along_max ? result_.statistics.lines_max : result_.statistics.lines_min);
-            if (!options_.lines) continue;
-            CurvatureLine out{line.family == along_max, line.closed, {}};
-            for (const Index c : line.crossings) out.points.push_back(network.point(c));
-            result_.lines.push_back(std::move(out));
-        }
-        for (const FieldUmbilic& u : field_.umbilics) {
-            const auto& f = mesh_.faces[u.face];
-            const Point3 place = u.weights[0] * mesh_.points[f[0]] + u.weights[1] * mesh_.points[f[1]] +
-                                 u.weights[2] * mesh_.points[f[2]];
-            result_.umbilics.push_back({place, mesh_.face_sources[u.face], u.half_turns});
+/// Caps the spacing around vertices and triangle centres of either surface that are farther than `limit` from the
+/// other. Returns the share of the input's vertices that are.
+double Remesher::refine_where_far(double error, double limit) {
+    const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
+    caps_.resize(mesh_.wedge_count(), 0.0);
+    const auto lower = [&](Index w) {
+        const double cap = 0.45 * std::min(spacing.at[0][w], spacing.at[1][w]);
+        if (caps_[w] == 0.0 || cap < caps_[w]) caps_[w] = cap;
+    };
+    const core::TriangleTree& input = *tree_;
+    const CoarseMesh triangles = make_triangles(filled_, input);
+    std::vector<Triangle> ids;
+    for (std::size_t i = 0; i < triangles.polygon_count(); ++i) {
+        const auto t = triangles.polygon(i);
+        ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+        const Point3 &a = triangles.points[t[0]], &b = triangles.points[t[1]], &c = triangles.points[t[2]];
+        for (const Point3& p : {(1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
+            const core::NearestPoint nearest = input.find_nearest(p);
+            if (nearest.squared_distance <= limit * limit) continue;
+            for (Index k = 0; k < 3; ++k) lower(mesh_.wedges[3 * nearest.triangle + k]);
         }
     }
-
-    /// Vertices of the input's own curves, for placement along them.
-    void Remesher::place(CoarseMesh & mesh) {
-        if (!options_.placement) return;
-        std::vector<FeatureEdge> features;
-        for (Index e = 0; e < mesh_.edge_curves.size(); ++e) {
-            const Index h = mesh_.edge_halfedges[e];
-            if (mesh_.edge_curves[e] != no_index)
-                features.push_back({mesh_.start_of(h), mesh_.end_of(h), mesh_.edge_curves[e]});
-        }
-        control_.report("placement", 0.9);
-        place_vertices(input_, features, mesh, {}, control_);
-        watch_.stage("placement");
+    const core::TriangleTree result(triangles.points, ids);
+    std::size_t far = 0;
+    for (Index w = 0; w < mesh_.wedge_count(); ++w) {
+        const Point3& p = mesh_.points[mesh_.wedge_vertices[w]];
+        if (result.find_nearest(p).squared_distance <= limit * limit) continue;
+        lower(w);
+        ++far;
     }
+    return static_cast<double>(far) / static_cast<double>(mesh_.wedge_count());
+}
 
-    CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
-        switch (options_.output) {
-            case RemeshOutput::polygons:
-                return options_.max_degree > 0 ? limit_degree(polygons, options_.max_degree) : polygons;
-            case RemeshOutput::quad_dominant:
-                return make_quad_dominant(polygons);
-            case RemeshOutput::triangles:
-                return make_triangles(polygons, *tree_);
-        }
-        return polygons;
+/// The share of the placed triangles that are farther from the input than `limit`, and vertices of the input
+/// likewise.
+double Remesher::far_share(double limit) const {
+    const CoarseMesh triangles = make_triangles(filled_, *tree_);
+    std::vector<Triangle> ids;
+    std::size_t far = 0, looked = 0;
+    for (std::size_t i = 0; i < triangles.polygon_count(); ++i, ++looked) {
+        const auto t = triangles.polygon(i);
+        ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+        const Point3 middle = (1.0 / 3.0) * (triangles.points[t[0]] + triangles.points[t[1]] + triangles.points[t[2]]);
+        far += tree_->find_nearest(middle).squared_distance > limit * limit ? 1 : 0;
     }
+    const core::TriangleTree result(triangles.points, ids);
+    std::size_t far_below = 0;
+    for (const Point3& p : mesh_.points) far_below += result.find_nearest(p).squared_distance > limit * limit ? 1 : 0;
+    return std::max(static_cast<double>(far) / static_cast<double>(looked),
+                    static_cast<double>(far_below) / static_cast<double>(mesh_.points.size()));
+}
 
-    void Remesher::describe_polygons() {
-        RemeshStatistics& s = result_.statistics;
-        s.spacing_error = best_->error;
-        s.t_nodes = best_->counts.t_nodes;
-        s.isotropic_samples = best_->samples;
-        const double polygons = static_cast<double>(std::max<std::size_t>(best_->counts.polygons, 1));
-        s.quad_share_with_t = static_cast<double>(best_->counts.quads_with_t) / polygons;
-        s.quad_share_without_t = static_cast<double>(best_->counts.quads_without_t) / polygons;
+/// The bound that is proved for the result as it stands, for every way to fill its polygons.
+double Remesher::prove_distance() {
+    PolygonMesh input{input_.positions, {}, {0}};
+    for (const Triangle& t : input_.triangles) {
+        input.corners.insert(input.corners.end(), t.begin(), t.end());
+        input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
     }
+    DistanceOptions options;
+    options.samples = 10000;
+    const SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
+    watch_.stage("certificate");
+    return result_.statistics.distance_bound = distance.hausdorff_bound;
+}
 
-    /// Cuts and places the polygons. False: there are none, because no network has only disks for faces.
-    bool Remesher::finish() {
-        describe_polygons();
-        if (!best_->flaws.empty()) return false;
-        const CoarseMesh polygons = cut(best_->polygons);
-        CoarseMesh coarse = polygons;
-        fill_open_faces(best_->layout(), {input_, *tree_, mesh_.diagonal, true}, mending_rule(0.0), coarse, control_);
-        watch_.stage("outputs");
-        if (options_.output == RemeshOutput::polygons && options_.placement) {
-            // Placed as quads and triangles, which say how the polygons are filled.
-            CoarseMesh filled = make_quad_dominant(coarse);
-            place(filled);
-            coarse.points = filled.points;
-            coarse.places = filled.places;
-        } else {
-            place(coarse);
-        }
-        filled_ = std::move(coarse);
-        placed_ = polygons;
-        for (std::size_t v = 0; v < placed_.points.size(); ++v) {
-            placed_.points[v] = filled_.points[v];
-            placed_.places[v] = filled_.places[v];
-        }
-        return true;
-    }
+/// One network, mended so that the error is kept; empty where that would be mending above all.
+std::optional<Remesher::Attempt> Remesher::attempt_error(double most_far) {
+    const double wanted = wanted_error();
+    if (far_share(wanted) > most_far) return std::nullopt;
+    constexpr double tightness = 1.03;  // bounds are proved to within 2 %
+    CoarseMesh mesh = mended(placed_, wanted / tightness);
+    if (control_.cancelled()) return std::nullopt;
+    emit(mesh);
+    if (prove_distance() > wanted) return std::nullopt;
+    return Attempt{std::move(*best_), std::move(mesh), result_.statistics};
+}
 
-    /// Whether contacts matter is known only when there are some: the input is asked then.
-    void Remesher::judge_input(CoarseMesh & mesh, Judge & judge) {
-        const bool is_cut_open = result_.statistics.non_manifold_edges + result_.statistics.split_vertices > 0;
-        if (is_cut_open) is_embedded_ = false;
-        if (!is_embedded_ && find_damage(judge, mesh, control_).contacts > 0)
-            is_embedded_ = !has_contact(input_, control_);
-        judge.is_embedded = is_embedded_.value_or(true);
-    }
-
-    MendingRule Remesher::mending_rule(double error) const {
-        MendingRule rule;
-        rule.tolerance = error > 0.0 ? 0.7 * error : 0.5 * best_->error;
-        rule.side_tolerance = error > 0.0 ? 0.9 * error : 1.5 * best_->error;
-        rule.crease_reach = arrangement_rule(best_->error).crease_error;
-        rule.error = error;
-        rule.reach = error;
-        rule.all_triangles = options_.output == RemeshOutput::triangles;
-        return rule;
-    }
-
-    CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
-        Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
-        judge_input(mesh, judge);
-        const MendingReport report = mend(best_->layout(), judge, mending_rule(error), mesh, control_);
-        RemeshStatistics& s = result_.statistics;
-        s.mended_regions = report.regions;
-        s.mended_triangles = report.triangles;
-        s.cut_faces = report.cut_faces;
-        if (options_.subdivide > 0) {
-            SubdivisionReport subdivision;
-            mesh = subdivide_soundly(mesh, options_.subdivide, judge, subdivision, control_);
-            s.held_vertices = subdivision.held;
-            s.broken_polygons = subdivision.broken;
-        }
-        watch_.stage("mending");
-        return mesh;
-    }
-
-    /// Instead of a network: the input with fewer triangles.
-    void Remesher::give_input(double tolerance) {
-        const std::size_t vertices = options_.vertices ? *options_.vertices : options_.faces ? *options_.faces / 2 : 0;
-        Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
-        CoarseMesh mesh;
-        for (const double part : {1.0, 0.25, 1e-4}) {
-            mesh = thin_input(mesh_, judge, part * tolerance, vertices, control_);
-            judge_input(mesh, judge);
-            if (part == 1e-4 || control_.cancelled() || find_damage(judge, mesh, control_).polygons.empty()) break;
-        }
-        result_.statistics.mended_regions = mesh_.component_count;
-        result_.statistics.mended_triangles = mesh.polygon_count();
-        const std::string place = best_->flaws.empty() ? ""
-                                                       : ", first near (" + std::to_string(best_->flaws.front().x) +
-                                                             ", " + std::to_string(best_->flaws.front().y) + ", " +
-                                                             std::to_string(best_->flaws.front().z) + ")";
-        result_.statistics.notes.push_back("no network of lines will do" + place +
-                                           ": the result is made of triangles of the input, thinned out");
-        emit(mesh);
-    }
-
-    void Remesher::finish_count() {
-        if (!finish()) {
-            give_input(options_.vertices || options_.faces ? mesh_.diagonal : best_->error);
-            return;
-        }
-        const double wanted = wanted_count();
-        CoarseMesh mesh = mended(placed_, 0.0);
-        // What mending adds, the network has to do without.
-        for (int round = 0; round < 2 && options_.subdivide == 0 && final_count(mesh) > 1.04 * wanted; ++round) {
-            if (control_.cancelled()) return;
-            const double before = final_count(filled_), added = final_count(mesh) - before;
-            if (added < 0.01 * wanted) break;
-            const double aim = std::max(before * wanted / (before + added), wanted - 1.3 * added);
-            Draft kept = std::move(*best_);
-            CoarseMesh kept_placed = std::move(placed_);
-            const RemeshStatistics statistics = result_.statistics;
-            best_.reset();
-            search(aim);
-            if (control_.cancelled() || !best_) return;
-            const bool is_whole = finish();
-            CoarseMesh fewer;
-            if (is_whole) fewer = mended(placed_, 0.0);
-            const double share = mended_share(mesh, statistics);
-            const bool is_nearer =
-                std::abs(std::log(final_count(fewer) / wanted)) < std::log(final_count(mesh) / wanted);
-            if (is_whole && is_nearer && mended_share(fewer, result_.statistics) < share + 0.15) {
-                mesh = std::move(fewer);
-                continue;
-            }
-            best_.emplace(std::move(kept));
-            placed_ = std::move(kept_placed);
-            const auto seconds = result_.statistics.stage_seconds;
-            result_.statistics = statistics;
-            result_.statistics.stage_seconds = seconds;
-            break;
-        }
+/// Lines closer together until mending, which keeps the error by cutting and by triangles of the input, has little
+/// to do. What has the fewest faces counts: whatever is mended has many.
+void Remesher::meet_error() {
+    double error = start_error();
+    constexpr std::array<double, 6> most_far{0.002, 0.002, 0.002, 0.02, 0.02, 0.3};
+    std::optional<Attempt> kept;
+    for (const double far : most_far) {
+        best_.emplace(draft(error));
         if (control_.cancelled()) return;
-        emit(mesh);
-        if (options_.subdivide > 0) return;
-        const double before = final_count(filled_), after = final_count(mesh);
-        if (std::abs(std::log(after / wanted)) <= 0.05) return;
-        std::string note = "the nearest count that was found is " + std::to_string(static_cast<std::size_t>(after)) +
-                           ", not " + std::to_string(static_cast<std::size_t>(wanted));
-        if (after > 1.05 * before)
-            note += "; mending has added " + std::to_string(static_cast<std::size_t>(after - before)) + " of them";
-        result_.statistics.notes.push_back(std::move(note));
+        if (!finish()) break;
+        std::optional<Attempt> next = attempt_error(far);
+        if (control_.cancelled()) return;
+        if (next) {
+            const auto faces = [](const Attempt& attempt) { return double(attempt.mesh.polygon_count()); };
+            if (kept && faces(*next) > 0.98 * faces(*kept)) break;
+            kept.emplace(std::move(*next));
+            const RemeshStatistics& s = kept->statistics;
+            if (double(s.mended_triangles) < 0.05 * faces(*kept) && double(s.cut_faces) < 0.1 * faces(*kept)) break;
+        }
+        // Far in a few places: lines closer together there; far nearly everywhere: a smaller epsilon.
+        const double share = refine_where_far(error, 0.75 * wanted_error());
+        if (share > 0.1 || share == 0.0) error *= 0.7;
     }
+    if (!kept) {
+        give_input_within_error();
+        return;
+    }
+    best_.emplace(std::move(kept->draft));
+    kept->statistics.stage_seconds = result_.statistics.stage_seconds;
+    kept->statistics.rounds = result_.statistics.rounds;
+    result_.statistics = std::move(kept->statistics);
+    emit(kept->mesh);
+}
 
-    void Remesher::emit(const CoarseMesh& coarse) {
-        result_.mesh = {};
-        result_.feature_edges.clear();
-        result_.feature_curves.clear();
-        result_.mesh.positions = coarse.points;
-        for (const Index c : coarse.corners) result_.mesh.corners.push_back(VertexId{c});
-        result_.mesh.offsets = coarse.offsets;
-        for (const FeatureEdge& e : coarse.feature_edges) {
-            result_.feature_edges.push_back({VertexId{e.a}, VertexId{e.b}});
-            result_.feature_curves.push_back(e.curve);
+/// Nothing else has helped: triangles of the input, as few as the error allows.
+void Remesher::give_input_within_error() {
+    const double wanted = wanted_error();
+    for (const double part : {0.5, 0.2, 1e-4}) {
+        if (control_.cancelled()) return;
+        give_input(part * wanted);
+        if (prove_distance() <= wanted) return;
+    }
+    result_.outcome = Outcome::over_budget;
+    result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
+                                       std::to_string(result_.statistics.distance_bound));
+}
+
+void Remesher::describe_lines() {
+    const Network& network = best_->network;
+    for (const Line& line : network.lines()) {
+        if (line.faces.empty()) continue;
+        result_.statistics.closed_lines += line.closed ? 1 : 0;
+        ++(line.family == along_max ? result_.statistics.lines_max : result_.statistics.lines_min);
+        if (!options_.lines) continue;
+        CurvatureLine out{line.family == along_max, line.closed, {}};
+        for (const Index c : line.crossings) out.points.push_back(network.point(c));
+        result_.lines.push_back(std::move(out));
+    }
+    for (const FieldUmbilic& u : field_.umbilics) {
+        const auto& f = mesh_.faces[u.face];
+        const Point3 place =
+            u.weights[0] * mesh_.points[f[0]] + u.weights[1] * mesh_.points[f[1]] + u.weights[2] * mesh_.points[f[2]];
+        result_.umbilics.push_back({place, mesh_.face_sources[u.face], u.half_turns});
+    }
+}
+
+/// Vertices of the input's own curves, for placement along them.
+void Remesher::place(CoarseMesh& mesh) {
+    if (!options_.placement) return;
+    std::vector<FeatureEdge> features;
+    for (Index e = 0; e < mesh_.edge_curves.size(); ++e) {
+        const Index h = mesh_.edge_halfedges[e];
+        if (mesh_.edge_curves[e] != no_index)
+            features.push_back({mesh_.start_of(h), mesh_.end_of(h), mesh_.edge_curves[e]});
+    }
+    control_.report("placement", 0.9);
+    place_vertices(input_, features, mesh, {}, control_);
+    watch_.stage("placement");
+}
+
+CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
+    switch (options_.output) {
+        case RemeshOutput::polygons:
+            return options_.max_degree > 0 ? limit_degree(polygons, options_.max_degree) : polygons;
+        case RemeshOutput::quad_dominant:
+            return make_quad_dominant(polygons);
+        case RemeshOutput::triangles:
+            return make_triangles(polygons, *tree_);
+    }
+    return polygons;
+}
+
+void Remesher::describe_polygons() {
+    RemeshStatistics& s = result_.statistics;
+    s.spacing_error = best_->error;
+    s.t_nodes = best_->counts.t_nodes;
+    s.isotropic_samples = best_->samples;
+    const double polygons = static_cast<double>(std::max<std::size_t>(best_->counts.polygons, 1));
+    s.quad_share_with_t = static_cast<double>(best_->counts.quads_with_t) / polygons;
+    s.quad_share_without_t = static_cast<double>(best_->counts.quads_without_t) / polygons;
+}
+
+/// Cuts and places the polygons. False: there are none, because no network has only disks for faces.
+bool Remesher::finish() {
+    describe_polygons();
+    if (!best_->flaws.empty()) return false;
+    const CoarseMesh polygons = cut(best_->polygons);
+    CoarseMesh coarse = polygons;
+    fill_open_faces(best_->layout(), {input_, *tree_, mesh_.diagonal, true}, mending_rule(0.0), coarse, control_);
+    watch_.stage("outputs");
+    if (options_.output == RemeshOutput::polygons && options_.placement) {
+        // Placed as quads and triangles, which say how the polygons are filled.
+        CoarseMesh filled = make_quad_dominant(coarse);
+        place(filled);
+        coarse.points = filled.points;
+        coarse.places = filled.places;
+    } else {
+        place(coarse);
+    }
+    filled_ = std::move(coarse);
+    placed_ = polygons;
+    for (std::size_t v = 0; v < placed_.points.size(); ++v) {
+        placed_.points[v] = filled_.points[v];
+        placed_.places[v] = filled_.places[v];
+    }
+    return true;
+}
+
+/// Whether contacts matter is known only when there are some: the input is asked then.
+void Remesher::judge_input(CoarseMesh& mesh, Judge& judge) {
+    const bool is_cut_open = result_.statistics.non_manifold_edges + result_.statistics.split_vertices > 0;
+    if (is_cut_open) is_embedded_ = false;
+    if (!is_embedded_ && find_damage(judge, mesh, control_).contacts > 0) is_embedded_ = !has_contact(input_, control_);
+    judge.is_embedded = is_embedded_.value_or(true);
+}
+
+MendingRule Remesher::mending_rule(double error) const {
+    MendingRule rule;
+    rule.tolerance = error > 0.0 ? 0.7 * error : 0.5 * best_->error;
+    rule.side_tolerance = error > 0.0 ? 0.9 * error : 1.5 * best_->error;
+    rule.crease_reach = arrangement_rule(best_->error).crease_error;
+    rule.error = error;
+    rule.reach = error;
+    rule.all_triangles = options_.output == RemeshOutput::triangles;
+    return rule;
+}
+
+CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    judge_input(mesh, judge);
+    const MendingReport report = mend(best_->layout(), judge, mending_rule(error), mesh, control_);
+    RemeshStatistics& s = result_.statistics;
+    s.mended_regions = report.regions;
+    s.mended_triangles = report.triangles;
+    s.cut_faces = report.cut_faces;
+    if (options_.subdivide > 0) {
+        SubdivisionReport subdivision;
+        mesh = subdivide_soundly(mesh, options_.subdivide, judge, subdivision, control_);
+        s.held_vertices = subdivision.held;
+        s.broken_polygons = subdivision.broken;
+    }
+    watch_.stage("mending");
+    return mesh;
+}
+
+/// Instead of a network: the input with fewer triangles.
+void Remesher::give_input(double tolerance) {
+    const std::size_t vertices = options_.vertices ? *options_.vertices : options_.faces ? *options_.faces / 2 : 0;
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    CoarseMesh mesh;
+    for (const double part : {1.0, 0.25, 1e-4}) {
+        mesh = thin_input(mesh_, judge, part * tolerance, vertices, control_);
+        judge_input(mesh, judge);
+        if (part == 1e-4 || control_.cancelled() || find_damage(judge, mesh, control_).polygons.empty()) break;
+    }
+    result_.statistics.mended_regions = mesh_.component_count;
+    result_.statistics.mended_triangles = mesh.polygon_count();
+    const std::string place = best_->flaws.empty() ? ""
+                                                   : ", first near (" + std::to_string(best_->flaws.front().x) + ", " +
+                                                         std::to_string(best_->flaws.front().y) + ", " +
+                                                         std::to_string(best_->flaws.front().z) + ")";
+    result_.statistics.notes.push_back("no network of lines will do" + place +
+                                       ": the result is made of triangles of the input, thinned out");
+    emit(mesh);
+}
+
+void Remesher::finish_count() {
+    if (!finish()) {
+        give_input(options_.vertices || options_.faces ? mesh_.diagonal : best_->error);
+        return;
+    }
+    const double wanted = wanted_count();
+    CoarseMesh mesh = mended(placed_, 0.0);
+    // What mending adds, the network has to do without.
+    for (int round = 0; round < 3 && options_.subdivide == 0 && final_count(mesh) > 1.04 * wanted; ++round) {
+        if (control_.cancelled()) return;
+        const double before = final_count(filled_), added = final_count(mesh) - before;
+        if (added < 0.01 * wanted) break;
+        const double aim = std::max(before * wanted / (before + added), wanted - 1.3 * added);
+        Draft kept = std::move(*best_);
+        CoarseMesh kept_placed = std::move(placed_);
+        const RemeshStatistics statistics = result_.statistics;
+        best_.reset();
+        search(aim);
+        if (control_.cancelled() || !best_) return;
+        const bool is_whole = finish();
+        CoarseMesh fewer;
+        if (is_whole) fewer = mended(placed_, 0.0);
+        const double share = mended_share(mesh, statistics);
+        const bool is_nearer = std::abs(std::log(final_count(fewer) / wanted)) < std::log(final_count(mesh) / wanted);
+        if (is_whole && is_nearer && mended_share(fewer, result_.statistics) < share + 0.25) {
+            mesh = std::move(fewer);
+            continue;
         }
-        RemeshStatistics& s = result_.statistics;
-        s.vertices = coarse.points.size();
-        s.faces = coarse.polygon_count();
-        s.quads = s.triangles = 0;
-        for (std::size_t i = 0; i < s.faces; ++i) {
-            s.quads += coarse.polygon(i).size() == 4 ? 1 : 0;
-            s.triangles += coarse.polygon(i).size() == 3 ? 1 : 0;
+        best_.emplace(std::move(kept));
+        placed_ = std::move(kept_placed);
+        const auto seconds = result_.statistics.stage_seconds;
+        result_.statistics = statistics;
+        result_.statistics.stage_seconds = seconds;
+        break;
+    }
+    if (control_.cancelled()) return;
+    emit(mesh);
+    if (options_.subdivide > 0) return;
+    const double before = final_count(filled_), after = final_count(mesh);
+    if (std::abs(std::log(after / wanted)) <= 0.05) return;
+    std::string note = "the nearest count that was found is " + std::to_string(static_cast<std::size_t>(after)) +
+                       ", not " + std::to_string(static_cast<std::size_t>(wanted));
+    if (after > 1.05 * before)
+        note += "; mending has added " + std::to_string(static_cast<std::size_t>(after - before)) + " of them";
+    result_.statistics.notes.push_back(std::move(note));
+}
+
+void Remesher::emit(const CoarseMesh& coarse) {
+    result_.mesh = {};
+    result_.feature_edges.clear();
+    result_.feature_curves.clear();
+    result_.mesh.positions = coarse.points;
+    for (const Index c : coarse.corners) result_.mesh.corners.push_back(VertexId{c});
+    result_.mesh.offsets = coarse.offsets;
+    for (const FeatureEdge& e : coarse.feature_edges) {
+        result_.feature_edges.push_back({VertexId{e.a}, VertexId{e.b}});
+        result_.feature_curves.push_back(e.curve);
+    }
+    RemeshStatistics& s = result_.statistics;
+    s.vertices = coarse.points.size();
+    s.faces = coarse.polygon_count();
+    s.quads = s.triangles = 0;
+    for (std::size_t i = 0; i < s.faces; ++i) {
+        s.quads += coarse.polygon(i).size() == 4 ? 1 : 0;
+        s.triangles += coarse.polygon(i).size() == 3 ? 1 : 0;
+    }
+}
+
+RemeshResult Remesher::run() {
+    if (prepare()) {
+        if (options_.vertices || options_.faces) {
+            search(wanted_count());
+            if (best_ && !control_.cancelled()) finish_count();
+        } else {
+            meet_error();
         }
     }
-
-    RemeshResult Remesher::run() {
-        if (prepare()) {
-            if (options_.vertices || options_.faces) {
-                search(wanted_count());
-                if (best_ && !control_.cancelled()) finish_count();
-            } else {
-                meet_error();
-            }
-        }
-        if (control_.cancelled() || !best_) {
-            result_.outcome = Outcome::cancelled;
-            return std::move(result_);
-        }
-        describe_lines();
-        control_.report("done", 1.0);
+    if (control_.cancelled() || !best_) {
+        result_.outcome = Outcome::cancelled;
         return std::move(result_);
     }
+    describe_lines();
+    control_.report("done", 1.0);
+    return std::move(result_);
+}
 
 }  // namespace
 }  // namespace remeshing
