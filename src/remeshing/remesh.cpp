@@ -119,9 +119,6 @@ private:
         std::sort(used.begin(), used.end());
         return static_cast<double>(std::unique(used.begin(), used.end()) - used.begin());
     }
-    static double mended_share(const CoarseMesh& mesh, const RemeshStatistics& statistics) {
-        return static_cast<double>(statistics.mended_triangles) / static_cast<double>(mesh.polygon_count());
-    }
     void search(double wanted);
     struct Attempt {
         Draft draft;
@@ -131,6 +128,7 @@ private:
     void meet_error();
     std::optional<Attempt> attempt_error(double most_far);
     void give_input_within_error();
+    void keep(Attempt&& attempt);
     double prove_distance();
     double refine_where_far(double error, double limit);
     double far_share(double limit) const;
@@ -512,11 +510,7 @@ void Remesher::meet_error() {
         give_input_within_error();
         return;
     }
-    best_.emplace(std::move(kept->draft));
-    kept->statistics.stage_seconds = result_.statistics.stage_seconds;
-    kept->statistics.rounds = result_.statistics.rounds;
-    result_.statistics = std::move(kept->statistics);
-    emit(kept->mesh);
+    keep(std::move(*kept));
 }
 
 /// Nothing else has helped: triangles of the input, as few as the error allows.
@@ -677,45 +671,50 @@ void Remesher::finish_count() {
         return;
     }
     const double wanted = wanted_count();
-    CoarseMesh mesh = mended(placed_, 0.0);
+    std::optional<Attempt> kept;
+    double least = 1e300, network = 0.0, aim = std::log(wanted);
+    std::optional<std::array<double, 2>> few,
+        many;  // logarithms: what the network was to have, how far off it came out
     // What mending adds, the network has to do without.
-    for (int round = 0; round < 3 && options_.subdivide == 0 && final_count(mesh) > 1.04 * wanted; ++round) {
+    for (int round = 0; round < 4; ++round) {
+        CoarseMesh mesh = mended(placed_, 0.0);
         if (control_.cancelled()) return;
-        const double before = final_count(filled_), added = final_count(mesh) - before;
-        if (added < 0.01 * wanted) break;
-        const double aim = std::max(before * wanted / (before + added), wanted - 1.3 * added);
-        Draft kept = std::move(*best_);
-        CoarseMesh kept_placed = std::move(placed_);
-        const RemeshStatistics statistics = result_.statistics;
-        best_.reset();
-        search(aim);
-        if (control_.cancelled() || !best_) return;
-        const bool is_whole = finish();
-        CoarseMesh fewer;
-        if (is_whole) fewer = mended(placed_, 0.0);
-        const double share = mended_share(mesh, statistics);
-        const bool is_nearer = std::abs(std::log(final_count(fewer) / wanted)) < std::log(final_count(mesh) / wanted);
-        if (is_whole && is_nearer && mended_share(fewer, result_.statistics) < share + 0.25) {
-            mesh = std::move(fewer);
-            continue;
+        const double count = final_count(mesh), off = std::log(count / wanted);
+        const bool is_mended = std::abs(count - count_of(*best_)) > 0.01 * wanted;
+        if (std::abs(off) < least) {
+            least = std::abs(off);
+            network = count_of(*best_);
+            kept.emplace(Attempt{std::move(*best_), std::move(mesh), result_.statistics});
         }
-        best_.emplace(std::move(kept));
-        placed_ = std::move(kept_placed);
-        const auto seconds = result_.statistics.stage_seconds;
-        result_.statistics = statistics;
-        result_.statistics.stage_seconds = seconds;
-        break;
+        if (least < 0.045 || !is_mended || options_.subdivide > 0) break;
+        (off > 0.0 ? many : few) = {aim, off};
+        aim -= std::clamp(off, -1.0, 1.0);
+        if (many && few) {
+            const double part = std::clamp((*many)[1] / ((*many)[1] - (*few)[1]), 0.2, 0.8);
+            aim = (*many)[0] + part * ((*few)[0] - (*many)[0]);
+        }
+        best_.reset();
+        search(std::max(std::exp(aim), 4.0));
+        if (control_.cancelled() || !best_) return;
+        if (!finish()) break;
     }
-    if (control_.cancelled()) return;
-    emit(mesh);
-    if (options_.subdivide > 0) return;
-    const double before = final_count(filled_), after = final_count(mesh);
-    if (std::abs(std::log(after / wanted)) <= 0.05) return;
+    keep(std::move(*kept));
+    const double after = final_count(kept->mesh);
+    if (options_.subdivide > 0 || std::abs(std::log(after / wanted)) <= 0.05) return;
     std::string note = "the nearest count that was found is " + std::to_string(static_cast<std::size_t>(after)) +
                        ", not " + std::to_string(static_cast<std::size_t>(wanted));
-    if (after > 1.05 * before)
-        note += "; mending has added " + std::to_string(static_cast<std::size_t>(after - before)) + " of them";
+    if (after > 1.05 * network)
+        note += "; mending has added " + std::to_string(static_cast<std::size_t>(after - network)) + " of them";
     result_.statistics.notes.push_back(std::move(note));
+}
+
+/// Takes an attempt for the result; its times are those of all.
+void Remesher::keep(Attempt&& attempt) {
+    best_.emplace(std::move(attempt.draft));
+    attempt.statistics.stage_seconds = result_.statistics.stage_seconds;
+    attempt.statistics.rounds = result_.statistics.rounds;
+    result_.statistics = std::move(attempt.statistics);
+    emit(attempt.mesh);
 }
 
 void Remesher::emit(const CoarseMesh& coarse) {
