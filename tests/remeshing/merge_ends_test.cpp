@@ -1,4 +1,4 @@
-// Contractions of short sides on features: what may go goes, and the mesh stays one.
+// Short sides that go, triangles that become quads, faces that are no disks: what may go goes, and the mesh stays one.
 #include "remeshing/merge_ends.h"
 
 #include <certa/remeshing.h>
@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "coarse_meshes.h"
+#include "remeshing/pair_triangles.h"
 
 namespace certa::remeshing {
 namespace {
@@ -114,6 +115,37 @@ TEST(MergeEnds, ATriangleOnTheSideGoes) {
     EXPECT_TRUE(shape.is_oriented());
     EXPECT_EQ(shape.components.size(), 1U);
     EXPECT_EQ(shape.components[0].boundary_loops, 1U);
+}
+
+/// Two triangles over a square, one corner lifted.
+CoarseMesh folded_square(double height) {
+    CoarseMesh mesh;
+    for (const Point3& p : {Point3{0, 0, 0}, Point3{1, 0, 0}, Point3{1, 1, height}, Point3{0, 1, 0}})
+        mesh.add_vertex(p, {});
+    mesh.add_polygon(std::array<Index, 3>{0, 1, 3}, 7);
+    mesh.add_polygon(std::array<Index, 3>{1, 2, 3}, 7);
+    return mesh;
+}
+
+TEST(PairTriangles, JoinsWhatIsFlat) {
+    const CoarseMesh quad = pair_triangles(folded_square(1e-3), {0, 0}, 1e-3);
+    ASSERT_EQ(quad.polygon_count(), 1U);
+    const auto ring = quad.polygon(0);
+    ASSERT_EQ(ring.size(), 4U);
+    for (Index i = 0; i < 4; ++i) EXPECT_EQ((ring[(i + 1) % 4] + 4 - ring[i]) % 4, 1U);  // 0 1 2 3 from somewhere
+    EXPECT_EQ(quad.parent(0), 7U);
+}
+
+TEST(PairTriangles, LeavesFoldsFeaturesAndOtherGroups) {
+    EXPECT_EQ(pair_triangles(folded_square(0.1), {0, 0}, 1e-3).polygon_count(), 2U);
+    EXPECT_EQ(pair_triangles(folded_square(0.0), {0, 1}, 1e-3).polygon_count(), 2U);
+    EXPECT_EQ(pair_triangles(folded_square(0.0), {no_index, no_index}, 1e-3).polygon_count(), 2U);
+    CoarseMesh creased = folded_square(0.0);
+    creased.feature_edges.push_back({3, 1, 0});
+    EXPECT_EQ(pair_triangles(creased, {0, 0}, 1e-3).polygon_count(), 2U);
+    CoarseMesh dart = folded_square(0.0);
+    dart.points[2] = {0.4, 0.4, 0.0};  // not convex
+    EXPECT_EQ(pair_triangles(dart, {0, 0}, 1e-3).polygon_count(), 2U);
 }
 
 /// A square sheet of 40 x 40 squares with square holes.
