@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/digest.h"
+
 namespace certa::implicit {
 namespace {
 
@@ -71,10 +73,10 @@ std::vector<std::uint32_t> negative_points(const Octree& tree, const Triangulati
 }  // namespace
 
 std::string write_certificate(const Expression& function, const Octree& tree, const Triangulation& triangulation,
-                              const Growth& growth, const Surface& surface,
+                              const Growth& growth, const Surface& surface, const TriangleMesh& mesh,
                               const std::vector<ImplicitComponent>& components, std::optional<double> hausdorff) {
     std::string text = "{\"format\":\"certa implicit certificate\",\"version\":1,\n\"function\":";
-    text += quoted(format_expression(function)) + ",\n\"grid\":{";
+    text += quoted(format_expression(function)) + ",\n\"mesh\":\"" + core::digest_of(mesh) + "\",\n\"grid\":{";
     append_numbers("first", tree.grid().first(), text);
     text += ",";
     append_numbers("count", tree.grid().count(), text);

@@ -11,10 +11,10 @@
 
 namespace certa::implicit {
 
-/// JSON as docs/formats.md describes it: function, grid, octree with what is claimed of each leaf, signs that no leaf
-/// gives, the order of marks, the edges that carry the mesh's vertices, components.
+/// JSON as docs/formats.md describes it: function, digest of the mesh that it is for, grid, octree with what is claimed
+/// of each leaf, signs that no leaf gives, the order of marks, the edges that carry the mesh's vertices, components.
 std::string write_certificate(const Expression& function, const Octree& tree, const Triangulation& triangulation,
-                              const Growth& growth, const Surface& surface,
+                              const Growth& growth, const Surface& surface, const TriangleMesh& mesh,
                               const std::vector<ImplicitComponent>& components,
                               std::optional<double> hausdorff = std::nullopt);
 

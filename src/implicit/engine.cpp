@@ -205,7 +205,7 @@ private:
             if (component.parent != none) result_.components.back().parent = component.parent;
         }
         if (certificate_)
-            result_.certificate = write_certificate(function_, tree_, triangulation, growth, surface,
+            result_.certificate = write_certificate(function_, tree_, triangulation, growth, surface, surface.mesh,
                                                     result_.components, result_.hausdorff);
         result_.mesh = std::move(surface.mesh);
         result_.triangle_components = std::move(surface.component_of_triangle);

@@ -56,7 +56,7 @@ public:
             components.emplace_back();
             components.back().genus = c.genus();
         }
-        return write_certificate(function_, tree_, *triangulation_, growth_, {}, components);
+        return write_certificate(function_, tree_, *triangulation_, growth_, {}, mesh_, components);
     }
 
 private:

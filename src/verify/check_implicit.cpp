@@ -14,6 +14,7 @@
 #include <numeric>
 #include <set>
 
+#include "core/digest.h"
 #include "core/parallel.h"
 #include "verify/implicit_clip.h"
 #include "verify/implicit_complex.h"
@@ -514,6 +515,10 @@ void check_claimed_distance(const TriangleMesh& mesh, const ImplicitFunction& fu
 /// is.
 MeshFindings check(const TriangleMesh& mesh, const ImplicitFunction& function, const ImplicitCertificate& certificate,
                    bool any, bool either_way, const RunControl& control, ImplicitCheck& result) {
+    if (!any && !certificate.mesh.empty() && certificate.mesh != core::digest_of(mesh)) {
+        add_to(result, "the mesh is not the one that the certificate was made for: its digest is another");
+        return {};
+    }
     const ImplicitComplex complex(certificate);
     Check check(function, complex, control, result);
     check.run();

@@ -131,6 +131,7 @@ ImplicitCertificate certificate_in(Reader& in) {
                     if (in.integer() != 1) in.fail("another version");
                 }},
                {"function", [&] { c.function = in.string(); }},
+               {"mesh", [&] { c.mesh = in.string(); }},
                {"grid",
                 [&] {
                     in.object({{"first", [&] { c.first = in.triple(); }},
@@ -155,7 +156,7 @@ ImplicitCertificate certificate_in(Reader& in) {
                         in.fail("hausdorff is no length");
                 }},
                {"genera", [&] { c.genera = in.integers(); }}},
-              {"loops", "hausdorff"});
+              {"loops", "hausdorff", "mesh"});
     return c;
 }
 

@@ -17,6 +17,7 @@ public:
 
 struct ImplicitCertificate {
     std::string function, octree;
+    std::string mesh;  ///< digest; empty: for any mesh that it proves
     std::array<std::int64_t, 3> first{}, count{}, exponent{};
     std::int64_t resolution = 0;
     std::vector<std::int64_t> negative_points, marks, vertex_edges, genera;
@@ -38,7 +39,7 @@ ImplicitProductCertificate read_product_certificate(std::string_view text);
 
 /// Reads the JSON of docs/formats.md: an object of strings, integers, arrays of integers and one object of such.
 /// Errors: UnreadableCertificate, also for keys that are missing, unknown or given twice. `loops` makes a clipped one;
-/// `hausdorff` may be missing, too.
+/// `hausdorff` and `mesh` may be missing, too.
 ImplicitCertificate read_certificate(std::string_view text);
 
 }  // namespace certa::verify

@@ -66,8 +66,29 @@ TEST_F(Checked, RejectsOtherFunctions) {
     }
 }
 
+TEST_F(Checked, IsForTheMeshThatItNames) {
+    const TriangleMesh good = result_.mesh;
+    const auto expect_other = [&](const char* what) {
+        const ImplicitCheck other = check();
+        ASSERT_FALSE(other.ok()) << what;
+        EXPECT_NE(other.violations.front().find("digest"), std::string::npos) << what;
+        result_.mesh = good;
+    };
+    result_.mesh.positions[7].x = std::nextafter(good.positions[7].x, 9.0);
+    expect_other("a coordinate by its last bit");
+    std::swap(result_.mesh.triangles[0], result_.mesh.triangles[1]);
+    expect_other("two triangles exchanged");
+    result_.mesh.positions.push_back({0, 0, 0});
+    expect_other("an extra vertex");
+    const std::size_t at = result_.certificate.find("\"mesh\":\"") + 8;
+    result_.certificate[at] = result_.certificate[at] == '0' ? '1' : '0';
+    expect_other("another digest");
+}
+
 TEST_F(Checked, RejectsOtherMeshes) {
     const TriangleMesh good = result_.mesh;
+    result_.certificate.erase(result_.certificate.find("\"mesh\":"), 74);  // judged by what it is, not by its digest
+    ASSERT_TRUE(check().ok());
     result_.mesh.positions[7].x = std::nextafter(good.positions[7].x, 9.0);
     EXPECT_NE(check().violations.front().find("vertex 8"), std::string::npos);
     result_.mesh = good;
