@@ -267,8 +267,23 @@ private:
             group.push_back(f != no_index && in_set_[f] != 0 ? region_of_[f] : no_index);
         }
         // Diagonals of quads are a little off the triangles for which the error was proved.
-        result_ = pair_triangles(result_, group, rule_.error > 0.0 ? 0.005 * rule_.error : 0.1 * rule_.tolerance);
-        find_damage(judge_, result_, control_);
+        const double height = rule_.error > 0.0 ? 0.005 * rule_.error : 0.1 * rule_.tolerance;
+        for (int round = 0; round < 6 && !control_.cancelled(); ++round) {
+            CoarseMesh paired = pair_triangles(result_, group, height);
+            const Damage damage = find_damage(judge_, paired, control_);
+            if (damage.polygons.empty()) {
+                result_ = std::move(paired);
+                return;
+            }
+            // Nothing is paired around what that has broken.
+            std::vector<std::uint8_t> is_bad(result_.points.size(), 0);
+            for (const Index q : damage.polygons)
+                for (const Index v : paired.polygon(q)) is_bad[v] = 1;
+            for (std::size_t q = 0; q < group.size(); ++q) {
+                const auto ring = result_.polygon(q);
+                if (std::any_of(ring.begin(), ring.end(), [&](Index v) { return is_bad[v] != 0; })) group[q] = no_index;
+            }
+        }
     }
 
     /// Sides that two polygons walk in the same direction, where a cut has repeated one, and sides that only one walks
