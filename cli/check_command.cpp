@@ -3,6 +3,7 @@
 #include <certa/conforming.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <memory>
 
 #include "check_surface_command.h"
@@ -61,6 +62,12 @@ ExitCode run_check(Session& session, const CheckArguments& arguments) {
         throw UsageError(arguments.file.path +
                          " has no tetrahedra: a surface mesh is checked with --against and the surface that it stands "
                          "for; `certa info` describes surfaces and complexes");
+    const FileArgument& against = arguments.against;
+    if (against.given() && against.path != "-" && !against.format && !format_of(against.path) &&
+        !std::filesystem::exists(against.path))
+        throw UsageError(arguments.file.path +
+                         " has tetrahedra: they are checked --against a file, and there is none of the name " +
+                         against.path + "; surface meshes are checked against functions");
     const TetMesh mesh = make_tet_mesh(document);
     const bool alone = !arguments.against.given();
     const PiecewiseLinearComplex complex = alone ? PiecewiseLinearComplex{} : read_against(session, arguments);

@@ -139,7 +139,7 @@ void verify(Session& session, const RemeshArguments& arguments, const RemeshResu
     }
     for (std::size_t i = 0; i < std::min<std::size_t>(5, check.violations.size()); ++i)
         session.say(check.violations[i].promise + ": " + check.violations[i].message);
-    throw Inability("remesh: the result fails its check (" + counted(check.violation_count, "violation") +
+    throw Inability("the result fails its check (" + counted(check.violation_count, "violation") +
                     ") and is not written; another --vertices, --error or --feature-angle may do, --no-verify writes "
                     "it as it is");
 }
@@ -206,6 +206,12 @@ void add_remesh_command(CLI::App& app, Action& action) {
     add_format_option(*command, "--output-format", arguments->output);
     // `output` here is what the polygons are; the file's name has -o.
     add_options(*command, frontend::remesh_options(), arguments->options);
+    // The other commands take a file there.
+    command->get_option("--output")->check([](const std::string& text) {
+        return text.find_first_of("./") == std::string::npos
+                   ? std::string()
+                   : "'" + text + "' is a file's name: a file goes after -o, --output says what faces it gets";
+    });
     command->get_option("--error")->excludes("--vertices", "--faces");
     command->get_option("--vertices")->excludes("--faces");
     command

@@ -27,6 +27,14 @@ std::string folder_of(const std::string& path) {
     return folder.empty() ? "." : folder;
 }
 
+/// Why no file can be made at `path`, where its folder is not there; empty where it is.
+std::string missing_folder(const std::string& path) {
+    std::error_code error;
+    const std::string folder = folder_of(path);
+    if (std::filesystem::exists(folder, error) || error) return {};
+    return "there is no folder " + folder + "; make it first";
+}
+
 void print_line(const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); }
 
 }  // namespace
@@ -145,6 +153,7 @@ void Session::require_writable(const FileArgument& file) const {
     if (flags_.json == file.path) throw UsageError(file.path + ": the output and the report cannot be the same file");
     if (std::filesystem::is_directory(file.path)) throw IoError(file.path, 0, "is a folder");
     const std::string folder = folder_of(file.path);
+    if (const std::string missing = missing_folder(file.path); !missing.empty()) throw IoError(file.path, 0, missing);
     if (access(folder.c_str(), W_OK | X_OK) != 0) throw IoError(file.path, 0, "cannot write into the folder " + folder);
 }
 
@@ -198,6 +207,9 @@ ExitCode Session::run(const std::function<ExitCode()>& body) {
     std::optional<tbb::global_control> limit;
     if (flags_.threads > 0) limit.emplace(tbb::global_control::max_allowed_parallelism, flags_.threads);
     report_["threads"] = flags_.threads > 0 ? flags_.threads : std::max(1U, std::thread::hardware_concurrency());
+    // Before the work, not after it.
+    if (const std::string missing = flags_.json == "-" ? "" : missing_folder(flags_.json); !missing.empty())
+        return fail(ExitCode::input, "io", "the report: " + flags_.json + ": " + missing);
     ExitCode code = run_guarded(body);
     if (interrupt_flag()) code = fail(ExitCode::interrupted, "interrupted", "interrupted; no output was written");
     if (!write_report(code)) code = ExitCode::input;

@@ -138,6 +138,21 @@ private:
 
     void warn(const std::string& message) { result_.warnings.push_back({DefectKind::open_facet, {}, {}, message}); }
 
+    /// Where the facets are open: most often a hole that nobody meant. Empty where every side is shared.
+    std::string name_rim() const {
+        const Complex& complex = mesh_.complex;
+        std::size_t count = 0, first = 0;
+        for (std::size_t s = 0; s < complex.segments.size(); ++s) {
+            if (complex.segment_facets[s].size() != 1) continue;
+            if (count++ == 0) first = s;
+        }
+        if (count == 0) return {};
+        const auto [a, b] = complex.segments[first];
+        return "; " + std::to_string(count) + (count == 1 ? " segment belongs" : " segments belong") +
+               " to one facet only, first that from vertex " + std::to_string(a + 1) + " to vertex " +
+               std::to_string(b + 1) + " at " + name_place(complex.points[a]);
+    }
+
     void choose_regions(bool keep_outside) {
         std::vector<std::uint32_t> bare;
         if (!keep_outside) kept_[0] = 0;
@@ -154,7 +169,8 @@ private:
             if (!keep_outside) {
                 warn(
                     "the facets enclose no region that may be kept: region 0, the outside, is part of the mesh up to "
-                    "the convex hull");
+                    "the convex hull" +
+                    name_rim());
             }
         }
         if (!all_covered(bare) && kept_[0] == 0) {

@@ -159,6 +159,10 @@ class Usage(CommandTest):
             with self.subTest(arguments=arguments):
                 self.assertIn(words, self.expect(2, *arguments))
         self.assertIn("no file of this name", self.expect(3, "implicit", "torus.txt"))
+        self.assertIn("a file goes after -o", self.expect(2, "remesh", "cube.off", "--output", "few.obj"))
+        self.expect(0, "conform", "cube.off", "-o", "cube.mesh")
+        self.assertIn("surface meshes are checked against functions",
+                      self.expect(2, "check", "cube.mesh", "--against", "x^2+y^2+z^2-1"))
 
     def test_help_has_an_example_and_every_option_a_line(self):
         for command in ("conform", "implicit", "check", "info", "convert"):
@@ -203,13 +207,16 @@ class Files(CommandTest):
         self.expect_no_strays("truncated.off", "nan.off", "index.off")
 
     def test_unwritable_output_exits_3_and_leaves_nothing(self):
-        self.expect(3, "conform", "cube.off", "-o", "no/such/folder/out.mesh")
+        self.assertIn("there is no folder no/such/folder; make it first",
+                      self.expect(3, "conform", "cube.off", "-o", "no/such/folder/out.mesh"))
         os.mkdir(self.path("taken.mesh"))
         self.expect(3, "conform", "cube.off", "-o", "taken.mesh")
         self.expect(3, "conform", "cube.off", "-o", "/dev/full", "--output-format", "medit")
         self.expect(3, "convert", "cube.off", "/dev/full", "--output-format", "ply")
         self.expect(3, "info", "cube.off", "--json", "no/such/folder/report.json")
-        self.expect_no_strays("taken.mesh")
+        text = self.expect(3, "conform", "cube.off", "-o", "out.mesh", "--json", "no/such/folder/report.json")
+        self.assertIn("the report: no/such/folder/report.json: there is no folder no/such/folder", text)
+        self.expect_no_strays("taken.mesh")  # told before the work
 
     def test_a_failing_run_keeps_the_old_file(self):
         self.write("out.mesh", "precious")
