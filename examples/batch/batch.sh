@@ -14,8 +14,8 @@ here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 if [ "${1:-}" = --one ]; then  # what parallel calls: --one OUT EXTENSION FILE COMMAND [OPTION...]
   out=$2 extension=$3 file=$4 command=$5
   shift 5
-  # a/b.off and a_b.off stay apart, and every name can be undone.
-  name=$(printf %s "$file" | sed 's/%/%25/g; s:/:%2F:g')
+  # a/b.off and a_b.off stay apart, every name can be undone, and none is hidden (../b.off).
+  name=$(printf %s "$file" | sed 's/%/%25/g; s:/:%2F:g; s:^\.:%2E:')
   status=0
   "${CERTA:-certa}" "$command" "$file" "$@" -o "$out/$name.$extension" --json "$out/$name.json" --threads 1 --quiet \
     >"$out/$name.log" 2>&1 || status=$?
@@ -29,12 +29,14 @@ if [ $# -lt 3 ]; then
 fi
 out=$1 extension=$2
 shift 2
+command -v "${CERTA:-certa}" >/dev/null || { echo "batch: there is no command ${CERTA:-certa}; CERTA=... names it" >&2; exit 2; }
 mkdir -p "$out"
 resume=--resume
 [ "${RETRY:-0}" = 1 ] && resume=--resume-failed
-failed=0
 parallel --will-cite --jobs "${JOBS:-100%}" --joblog "$out/jobs.log" "$resume" --quote \
-  "${BASH_SOURCE[0]}" --one "$out" "$extension" {} "$@" || failed=$?
+  "${BASH_SOURCE[0]}" --one "$out" "$extension" {} "$@" || true
 python3 "$here/merge.py" "$out"
+# Those of an earlier start count too.
+failed=$(find "$out" -name '*.status' -exec awk -F '\t' '$1 != 0' {} + | wc -l)
 [ "$failed" -eq 0 ] || echo "batch: some files failed; $out/table.csv says which" >&2
 exit $((failed > 0))

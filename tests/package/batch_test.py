@@ -61,6 +61,13 @@ def main():
         assert rows["broken.off"]["exit"] == "3" and "broken.off:2" in rows["broken.off"]["message"], rows
         reports = [json.loads(line) for line in (root / "out" / "reports.jsonl").read_text().splitlines()]
         assert len(reports) == len(names) and sum(report.get("outcome") == "done" for report in reports) == 6
+        # A start that has nothing left to do tells of the failure too.
+        assert start("batch.sh", "out", "mesh", "conform", "--keep-outside").returncode == 1
+        # Results of files in a folder above are not hidden.
+        assert start("batch.sh", "above", "mesh", "conform", listed=["./" + names[0]]).returncode == 0
+        assert (root / "above" / "%2E%2Fin put%2F0.off.mesh").exists(), os.listdir(root / "above")
+        assert start("batch.sh", "none", "mesh", "conform", CERTA="no-such-command").returncode == 2
+        assert not (root / "none").exists()
         # Only what failed is repeated.
         (root / "broken.off").write_text(CUBE)
         assert start("batch.sh", "out", "mesh", "conform", "--keep-outside", RETRY="1").returncode == 0
