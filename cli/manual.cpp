@@ -107,7 +107,7 @@ std::string bash_completion(const CLI::App& app) {
            "    elif [[ $word == -* ]]; then\n"
            "        COMPREPLY=($(compgen -W \"$flags\" -- \"$word\"))\n"
            "    else\n"
-           "        COMPREPLY=($(compgen -f -- \"$word\"))\n"
+           "        mapfile -t COMPREPLY < <(compgen -f -- \"$word\")\n"  // names may hold blanks
            "        compopt -o filenames 2>/dev/null\n"
            "    fi\n"
            "}\n"

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
+#include <set>
+#include <string>
+#include <string_view>
 
 #include "io/document_parts.h"
 #include "io/formats.h"
@@ -14,15 +17,50 @@
 namespace certa::io {
 namespace {
 
-constexpr std::array ignored_words{"vt",       "vn",       "g",          "o",         "s",   "mg",
-                                   "usemtl",   "mtllib",   "usemap",     "maplib",    "lod", "bevel",
-                                   "c_interp", "d_interp", "shadow_obj", "trace_obj", "p"};
+/// A statement that is stepped over, and what it holds, as the note of the document says it.
+struct IgnoredWord {
+    std::string_view word, kind;
+};
+constexpr std::array ignored_words{IgnoredWord{"vt", "texture coordinates"},
+                                   IgnoredWord{"vn", "normals"},
+                                   IgnoredWord{"g", "groups"},
+                                   IgnoredWord{"o", "object names"},
+                                   IgnoredWord{"s", "groups"},
+                                   IgnoredWord{"mg", "groups"},
+                                   IgnoredWord{"usemtl", "materials"},
+                                   IgnoredWord{"mtllib", "materials"},
+                                   IgnoredWord{"usemap", "materials"},
+                                   IgnoredWord{"maplib", "materials"},
+                                   IgnoredWord{"lod", "display attributes"},
+                                   IgnoredWord{"bevel", "display attributes"},
+                                   IgnoredWord{"c_interp", "display attributes"},
+                                   IgnoredWord{"d_interp", "display attributes"},
+                                   IgnoredWord{"shadow_obj", "display attributes"},
+                                   IgnoredWord{"trace_obj", "display attributes"},
+                                   IgnoredWord{"p", "point elements"}};
 constexpr std::array free_form_words{"vp",   "cstype", "deg", "bmat", "step", "curv",  "curv2", "surf", "parm", "trim",
                                      "hole", "scrv",   "sp",  "end",  "con",  "ctech", "stech", "call", "csh"};
 
 template <std::size_t N>
 bool contains(const std::array<const char*, N>& words, std::string_view word) {
     return std::find(words.begin(), words.end(), word) != words.end();
+}
+
+const IgnoredWord* ignored_word(std::string_view word) {
+    const auto* found = std::find_if(ignored_words.begin(), ignored_words.end(),
+                                     [&](const IgnoredWord& ignored) { return ignored.word == word; });
+    return found == ignored_words.end() ? nullptr : found;
+}
+
+/// "a", "a and b", "a, b and c".
+std::string list_of(const std::set<std::string_view>& words) {
+    std::string text;
+    std::size_t left = words.size();
+    for (const std::string_view word : words) {
+        text += word;
+        if (--left > 0) text += left == 1 ? " and " : ", ";
+    }
+    return text;
 }
 
 class ObjReader {
@@ -34,9 +72,7 @@ public:
         while (!cursor_.at_end()) read_statement();
         check_forward_references();
         make_facets_of_polygons(complex());
-        if (has_extras_)
-            document_.notes.push_back(
-                "texture coordinates, normals, colours, groups, materials and point elements are left out");
+        if (!left_out_.empty()) document_.notes.push_back(list_of(left_out_) + " are left out");
         return std::move(document_);
     }
 
@@ -72,8 +108,8 @@ private:
             read_face();
         } else if (keyword == "l") {
             read_line();
-        } else if (contains(ignored_words, keyword)) {
-            has_extras_ = true;
+        } else if (const auto* ignored = ignored_word(keyword)) {
+            left_out_.insert(ignored->kind);
             skip_statement();
         } else if (contains(free_form_words, keyword)) {
             cursor_.fail("free-form geometry (" + quoted(keyword) + ") is not read; save it as polygons");
@@ -101,7 +137,7 @@ private:
             if (extras == 4 || !parse_number(word, value))
                 cursor_.fail("unexpected " + quoted(word) + " after the coordinates of a vertex");
         }
-        has_extras_ |= extras > 0;
+        if (extras > 0) left_out_.insert("colours of vertices");
     }
 
     /// A corner `v`, `v/vt`, `v//vn` or `v/vt/vn`; only v is used. 0-based, possibly beyond the vertices read so far.
@@ -156,7 +192,7 @@ private:
     MeshDocument document_;
     std::int64_t farthest_ = -1;
     std::size_t farthest_at_ = 0;
-    bool has_extras_ = false;
+    std::set<std::string_view> left_out_;
 };
 
 }  // namespace

@@ -184,6 +184,13 @@ class Usage(CommandTest):
                 self.assertIn(option.replace("-", "\\-"), manual)
                 self.assertIn(option, completion)
 
+    def test_completion_offers_a_name_with_a_blank_as_one(self):
+        self.write("words.bash", self.run_certa("completion").stdout.decode())
+        self.write("my part.off", CUBE)
+        ask = 'source words.bash; COMP_WORDS=(certa info my); COMP_CWORD=2; _certa; printf "<%s>" "${COMPREPLY[@]}"'
+        done = subprocess.run(["bash", "-c", ask], cwd=self.path("."), capture_output=True, text=True)
+        self.assertEqual(done.stdout, "<my part.off>", done.stderr)
+
     def test_version_names_commit_and_libraries(self):
         done = self.run_certa("--version")
         self.assertEqual(done.returncode, 0)

@@ -86,7 +86,13 @@ TEST(Obj, ReadsCornersContinuationsNegativeIndicesAndLines) {
     EXPECT_EQ(segments_of(document), (Lists{{0, 1}, {1, 2}, {3, 0}}));
     EXPECT_EQ(document.complex.positions[3], (Point3{0, 0, 1}));
     EXPECT_EQ(document.complex.facet_count(), 4U);
-    EXPECT_EQ(document.notes.size(), 1U);
+    ASSERT_EQ(document.notes.size(), 1U);
+    EXPECT_EQ(document.notes[0],
+              "colours of vertices, groups, materials, normals, object names, point elements and texture coordinates "
+              "are left out");
+    // Only what is there is named.
+    const MeshDocument named = parse_document("o part\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", Format::obj);
+    EXPECT_EQ(named.notes, std::vector<std::string>{"object names are left out"});
 }
 
 // --- PLY ---
