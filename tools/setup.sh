@@ -69,9 +69,12 @@ build() {
   # Ninja's one line of progress on a terminal; elsewhere only what went wrong.
   if [ -t 1 ]; then
     cmake --build "$folder" -j "$jobs" ${1:+--target "$@"}
-  elif ! cmake --build "$folder" -j "$jobs" ${1:+--target "$@"} >"$folder/build.log" 2>&1; then
-    tail -n 200 "$folder/build.log" >&2
-    exit 1
+  else
+    echo "some minutes, the first time; $folder/build.log tells how far it is"
+    if ! cmake --build "$folder" -j "$jobs" ${1:+--target "$@"} >"$folder/build.log" 2>&1; then
+      tail -n 200 "$folder/build.log" >&2
+      exit 1
+    fi
   fi
 }
 
