@@ -22,6 +22,7 @@
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
 #include "remeshing/sound_subdivision.h"
+#include "remeshing/stitch.h"
 #include "remeshing/templates.h"
 #include "remeshing/trace_lines.h"
 
@@ -139,7 +140,7 @@ private:
     void judge_input(CoarseMesh& mesh, Judge& judge);
     void give_input(double tolerance);
     void finish_count();
-    void emit(const CoarseMesh& coarse);
+    void emit(const CoarseMesh& mesh);
     void place(CoarseMesh& mesh);
     CoarseMesh cut(const CoarseMesh& polygons);
     void describe_lines();
@@ -717,7 +718,9 @@ void Remesher::keep(Attempt&& attempt) {
     emit(attempt.mesh);
 }
 
-void Remesher::emit(const CoarseMesh& coarse) {
+void Remesher::emit(const CoarseMesh& mesh) {
+    const bool is_cut_open = result_.statistics.non_manifold_edges + result_.statistics.split_vertices > 0;
+    const CoarseMesh coarse = is_cut_open ? stitch(mesh) : mesh;
     result_.mesh = {};
     result_.feature_edges.clear();
     result_.feature_curves.clear();

@@ -117,6 +117,39 @@ TEST(MergeEnds, ATriangleOnTheSideGoes) {
     EXPECT_EQ(shape.components[0].boundary_loops, 1U);
 }
 
+PolygonMesh polygons_of(const TriangleMesh& mesh) {
+    PolygonMesh out{mesh.positions, {}, {0}};
+    for (const Triangle& t : mesh.triangles) {
+        out.corners.insert(out.corners.end(), t.begin(), t.end());
+        out.offsets.push_back(static_cast<std::uint32_t>(out.corners.size()));
+    }
+    return out;
+}
+
+TEST(Stitch, SheetsAtOneEdgeAreOneMeshAgain) {
+    // Three half-planes at the z axis, of 4 x 4 squares each: their common edge has three triangles on each side.
+    TriangleMesh book;
+    for (const Point3& page : {Point3{1, 0, 0}, Point3{-0.5, 0.8, 0}, Point3{-0.5, -0.8, 0}})
+        for (std::uint32_t j = 0; j <= 4; ++j)
+            for (std::uint32_t i = 0; i <= 4; ++i) book.positions.push_back(0.25 * i * page + Point3{0, 0, 0.25 * j});
+    const auto at = [](std::uint32_t page, std::uint32_t i, std::uint32_t j) {
+        return VertexId{i == 0 ? 5 * j : 25 * page + 5 * j + i};
+    };
+    for (std::uint32_t page = 0; page < 3; ++page)
+        for (std::uint32_t j = 0; j < 4; ++j)
+            for (std::uint32_t i = 0; i < 4; ++i) {
+                book.triangles.push_back({at(page, i, j), at(page, i + 1, j), at(page, i + 1, j + 1)});
+                book.triangles.push_back({at(page, i, j), at(page, i + 1, j + 1), at(page, i, j + 1)});
+            }
+    const RemeshResult result = remesh(book);
+    EXPECT_EQ(result.statistics.vertices, 8U);  // two ends of the edge, two corners of each page
+    EXPECT_EQ(result.mesh.positions.size(), 8U);
+    EXPECT_EQ(result.statistics.faces, 3U);
+    EXPECT_GT(result.statistics.non_manifold_edges, 0U);
+    const SurfaceCheck check = check_surface(result.mesh, polygons_of(book));
+    for (const Violation& violation : check.violations) ADD_FAILURE() << violation.message;
+}
+
 /// Two triangles over a square, one corner lifted.
 CoarseMesh folded_square(double height) {
     CoarseMesh mesh;
@@ -169,15 +202,6 @@ TriangleMesh sheet_with_holes(double height) {
             mesh.triangles.push_back({a, c, d});
         }
     return mesh;
-}
-
-PolygonMesh polygons_of(const TriangleMesh& mesh) {
-    PolygonMesh out{mesh.positions, {}, {0}};
-    for (const Triangle& t : mesh.triangles) {
-        out.corners.insert(out.corners.end(), t.begin(), t.end());
-        out.offsets.push_back(static_cast<std::uint32_t>(out.corners.size()));
-    }
-    return out;
 }
 
 TEST(OpenFaces, AFlatPlateWithHolesNeedsItsCornersOnly) {

@@ -1,0 +1,10 @@
+#pragma once
+// Together again what was cut open at edges of more than two triangles, and at vertices of several fans.
+#include "remeshing/coarse_mesh.h"
+
+namespace certa::remeshing {
+
+/// Makes one vertex of those in the very same place, but where a polygon has two of them; vertices without polygons go.
+CoarseMesh stitch(const CoarseMesh& mesh);
+
+}  // namespace certa::remeshing
