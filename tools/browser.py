@@ -125,13 +125,13 @@ class Browser:
         self.call("Emulation.setDeviceMetricsOverride",
                   {"width": width, "height": height, "deviceScaleFactor": scale, "mobile": False})
 
-    def open(self, path, fragment=""):
+    def open(self, path, fragment="", ready="window.certa || document.documentElement.dataset.certa"):
         """Opens a file anew and waits until it has drawn, or has said why it does not."""
         self.call("Page.navigate", {"url": "about:blank"})
         url = "file://" + os.path.abspath(path) + ("#" + fragment.lstrip("#") if fragment else "")
         self.call("Page.navigate", {"url": url})
         deadline = time.monotonic() + self.timeout
-        while not self.evaluate("document.readyState === 'complete' && Boolean(window.certa || document.documentElement.dataset.certa)"):
+        while not self.evaluate("document.readyState === 'complete' && Boolean(" + ready + ")"):
             if self.errors or time.monotonic() > deadline:
                 raise RuntimeError(f"{path} does not show anything: {self.errors}")
             time.sleep(0.05)
