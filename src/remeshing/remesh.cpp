@@ -19,6 +19,7 @@
 #include "remeshing/guides.h"
 #include "remeshing/isotropic.h"
 #include "remeshing/mend.h"
+#include "remeshing/pair_triangles.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
 #include "remeshing/sound_subdivision.h"
@@ -507,10 +508,16 @@ void Remesher::meet_error() {
         const double share = refine_where_far(error, 0.75 * wanted_error());
         if (share > 0.1 || share == 0.0) error *= 0.7;
     }
-    if (!kept) {
-        give_input_within_error();
-        return;
-    }
+    const auto faces = kept ? kept->mesh.polygon_count() : 0;
+    if (kept && 2 * kept->statistics.mended_triangles < faces) return keep(std::move(*kept));
+    // Mostly triangles of the input: all of them, thinned out, may be fewer.
+    if (kept) best_.emplace(kept->draft);
+    const RemeshStatistics before = result_.statistics;
+    give_input_within_error();
+    if (control_.cancelled() || !kept) return;
+    if (result_.outcome == Outcome::done && result_.statistics.faces < faces) return;
+    result_.outcome = Outcome::done;
+    result_.statistics.stage_seconds = before.stage_seconds;
     keep(std::move(*kept));
 }
 
@@ -654,6 +661,10 @@ void Remesher::give_input(double tolerance) {
         mesh = thin_input(mesh_, judge, part * tolerance, vertices, control_);
         judge_input(mesh, judge);
         if (part == 1e-4 || control_.cancelled() || find_damage(judge, mesh, control_).polygons.empty()) break;
+    }
+    if (options_.output != RemeshOutput::triangles && find_damage(judge, mesh, control_).polygons.empty()) {
+        CoarseMesh paired = pair_triangles(mesh, std::vector<Index>(mesh.polygon_count(), 0), 5e-3 * tolerance);
+        if (find_damage(judge, paired, control_).polygons.empty()) mesh = std::move(paired);
     }
     result_.statistics.mended_regions = mesh_.component_count;
     result_.statistics.mended_triangles = mesh.polygon_count();
