@@ -41,10 +41,10 @@ struct RemeshOptions {
     std::optional<Length> error = std::nullopt;  ///< bound on the distance between result and input, both ways
     std::optional<std::uint64_t> vertices = std::nullopt;
     std::optional<std::uint64_t> faces = std::nullopt;
-    double isotropy = 0.0;                        ///< rho of the thesis, in [0, 1]: 0 follows both curvatures, 1 none
-    double feature_angle_radians = 0.6981;        ///< an edge is a crease above this angle between its faces' normals
-    std::vector<Edge> features;                   ///< edges of the input that are creases whatever their angle
-    std::vector<Edge> guides;                     ///< edges of the input that lines follow without being creases
+    double isotropy = 0.0;  ///< rho of the thesis, in [0, 1]: 0 follows both curvatures, 1 none
+    double feature_angle_radians = 0.69813170079773179;  ///< 40 degrees: sharper edges are creases
+    std::vector<Edge> features;                          ///< edges of the input that are creases whatever their angle
+    std::vector<Edge> guides;                            ///< edges of the input that lines follow without being creases
     std::optional<Length> smooth = std::nullopt;  ///< length over which directions are smoothed; chosen when empty
     SmoothingMethod smoothing_method = SmoothingMethod::screened;
     double transfer = 0.5;            ///< lines per length grow like |k|^transfer; 0.5 is the thesis's
@@ -130,7 +130,9 @@ WeldedSurface weld_surface(const TriangleMesh& mesh);
 ///             either way (they are turned alike); edges of more than two triangles become creases.
 /// Result:     an oriented polygon mesh with the input's components, genus and boundary loops; creases, boundary and
 ///             corners of the input are covered by sides and corners of polygons.
-/// Errors:     InputError empty_input, index_out_of_range, non_finite_coordinate, option_out_of_range, and
+/// Errors:     InputError empty_input, index_out_of_range, non_finite_coordinate, coordinate_out_of_range (beyond 1e50,
+/// or smaller
+///             than 1e-50 in all), option_out_of_range, and
 ///             conflicting_orientation where a component has only one side.
 /// Cost:       O(n log n) in the input, tracing once per round of the search for a count; memory linear.
 /// Source:     thesis, Part II chapter 4; what differs and why: docs/remesh.md.

@@ -19,7 +19,7 @@ struct SurfaceCheckOptions {
     /// An edge of the input is a crease above this angle between the normals of its polygons. Groups of such edges that
     /// touch no other crease and are shorter together than 3 % of the diagonal and 12 mean edges are noise. Normals of
     /// triangles lower than 5e-4 of the diagonal say nothing: the polygons beyond them must form the angle too.
-    double feature_angle_radians = 0.6981;
+    double feature_angle_radians = 0.69813170079773179;
     std::vector<Edge> features = {};  ///< edges of the input that are creases whatever their angle
     /// How far a crease may be from the nearest edge, a corner from the nearest vertex, of the mesh. Empty: `error`, or
     /// the bound on the distance that was found, and at least 1e-6 of the diagonal.

@@ -21,12 +21,18 @@ namespace {
     throw InputError({{kind, {{element, static_cast<std::uint32_t>(index)}}, place, message}});
 }
 
+constexpr double largest_coordinate = 1e50;  // lengths to the sixth power and their inverses are numbers
+
 void check_input(const TriangleMesh& mesh) {
     for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
         const Point3& p = mesh.positions[v];
         if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z))
             refuse(DefectKind::non_finite_coordinate, ElementKind::vertex, v, {},
                    "vertex " + std::to_string(v + 1) + " has a coordinate that is no finite number");
+        if (std::max({std::abs(p.x), std::abs(p.y), std::abs(p.z)}) > largest_coordinate)
+            refuse(DefectKind::coordinate_out_of_range, ElementKind::vertex, v, p,
+                   "vertex " + std::to_string(v + 1) +
+                       " has a coordinate beyond 1e50, which cannot be remeshed reliably: choose another unit");
     }
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t)
         for (const VertexId v : mesh.triangles[t])
@@ -36,6 +42,19 @@ void check_input(const TriangleMesh& mesh) {
                            " of " + std::to_string(mesh.positions.size()));
     if (mesh.triangles.empty())
         throw InputError({{DefectKind::empty_input, {}, {}, "there are no triangles: nothing to remesh"}});
+    Point3 low = mesh.positions[index_of(mesh.triangles[0][0])], high = low;
+    for (const Triangle& t : mesh.triangles)
+        for (const VertexId v : t) {
+            const Point3& p = mesh.positions[index_of(v)];
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        }
+    const double extent = std::max({high.x - low.x, high.y - low.y, high.z - low.z});
+    if (extent > 0.0 && extent < 1.0 / largest_coordinate)
+        throw InputError({{DefectKind::coordinate_out_of_range,
+                           {},
+                           low,
+                           "the surface is smaller than 1e-50 and cannot be remeshed reliably: choose another unit"}});
 }
 
 }  // namespace

@@ -343,6 +343,17 @@ TEST(Remesh, RefusesWhatItCannotDo) {
     broken = generators::make_box(1.0, 1.0, 1.0);
     broken.triangles[0][0] = VertexId{99};
     EXPECT_THROW(remesh(broken), InputError);
+    for (const double unit : {1e60, 1e-60, 4e-159}) {
+        const TriangleMesh far_off = generators::make_box(unit, unit, unit);
+        try {
+            remesh(far_off);
+            ADD_FAILURE() << unit;
+        } catch (const InputError& error) {
+            EXPECT_EQ(error.defects().front().kind, DefectKind::coordinate_out_of_range) << unit;
+        }
+    }
+    EXPECT_EQ(remesh(generators::make_box(1e40, 1e40, 1e40)).statistics.vertices, 8U);
+    EXPECT_EQ(remesh(generators::make_box(1e-40, 1e-40, 1e-40)).statistics.vertices, 8U);
     RemeshOptions both;
     both.vertices = 100;
     both.error = Length{1.0, false};
