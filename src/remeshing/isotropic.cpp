@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/triangle_tree.h"
+#include "remeshing/segment_distance.h"
 #include "remeshing/triangulate.h"
 
 namespace certa::remeshing {
@@ -21,12 +22,6 @@ Complex local_place(const WorkMesh& mesh, const SurfacePlace& place) {
     Complex sum = 0.0;
     for (Index i = 0; i < 3; ++i) sum += place.weights[i] * mesh.local(place.face, i);
     return sum;
-}
-
-double distance_to_segment(const Point3& p, const Point3& a, const Point3& b) {
-    const Point3 d = b - a, e = p - a;
-    const double square = dot(d, d), t = square > 0.0 ? std::clamp(dot(e, d) / square, 0.0, 1.0) : 0.0;
-    return norm(e - t * d);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "remeshing/mend.h"
 
 #include <certa/distance.h>
+#include <certa/io.h>
 
 #include <algorithm>
 #include <cmath>
@@ -444,19 +445,12 @@ private:
         for (const Index v : result_.corners) mesh.corners.push_back(VertexId{v});
         return mesh;
     }
-    PolygonMesh input_as_polygons() const {
-        PolygonMesh mesh{judge_.input.positions, {}, {0}};
-        for (const Triangle& t : judge_.input.triangles) {
-            mesh.corners.insert(mesh.corners.end(), t.begin(), t.end());
-            mesh.offsets.push_back(static_cast<std::uint32_t>(mesh.corners.size()));
-        }
-        return mesh;
-    }
     /// The proved distance of the result, for every way to fill its polygons.
     double bound() const {
         DistanceOptions options;
         options.samples = 10000;
-        return measure_distance(result_as_polygons(), input_as_polygons(), options, control_).hausdorff_bound;
+        return measure_distance(result_as_polygons(), make_polygon_mesh(judge_.input), options, control_)
+            .hausdorff_bound;
     }
 
     /// Of the input's vertices from the result: less than the bound.
@@ -477,7 +471,7 @@ private:
     void add_far(std::vector<Index>& apart) const {
         constexpr std::uint64_t pieces = 200000;
         for (const FarPlace& place :
-             find_far_places(result_as_polygons(), input_as_polygons(), rule_.error, pieces, control_))
+             find_far_places(result_as_polygons(), make_polygon_mesh(judge_.input), rule_.error, pieces, control_))
             apart.push_back(place.is_on_first ? place.polygon : place.nearest);
     }
     /// What is too far is cut along its best diagonals first; triangles are broken. True: something was cut.

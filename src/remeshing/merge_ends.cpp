@@ -8,18 +8,12 @@
 #include <optional>
 #include <queue>
 
-#include "core/vector3.h"
+#include "remeshing/segment_distance.h"
 
 namespace certa::remeshing {
 namespace {
 
 constexpr double smooth_share = 0.3;  ///< of the reach, for sides that are on no feature
-
-double distance_to_segment(const Point3& p, const Point3& a, const Point3& b) {
-    const Point3 d = b - a;
-    const double length = dot(d, d), s = length > 0.0 ? std::clamp(dot(p - a, d) / length, 0.0, 1.0) : 0.0;
-    return norm(p - a - s * d);
-}
 
 /// A side on a feature curve, and the nodes that it has swallowed.
 struct CurveSide {

@@ -4,6 +4,7 @@
 // vertices or faces is what was asked for; then placement. Vertices go like 1 / epsilon, so a few steps of the secant
 // rule on logarithms find epsilon; the round that came nearest counts.
 #include <certa/distance.h>
+#include <certa/io.h>
 #include <certa/remeshing.h>
 
 #include <algorithm>
@@ -461,14 +462,9 @@ double Remesher::far_share(double limit) const {
 
 /// The bound that is proved for the result as it stands, for every way to fill its polygons.
 double Remesher::prove_distance() {
-    PolygonMesh input{input_.positions, {}, {0}};
-    for (const Triangle& t : input_.triangles) {
-        input.corners.insert(input.corners.end(), t.begin(), t.end());
-        input.offsets.push_back(static_cast<std::uint32_t>(input.corners.size()));
-    }
     DistanceOptions options;
     options.samples = 10000;
-    const SurfaceDistance distance = measure_distance(result_.mesh, input, options, control_);
+    const SurfaceDistance distance = measure_distance(result_.mesh, make_polygon_mesh(input_), options, control_);
     watch_.stage("certificate");
     return result_.statistics.distance_bound = distance.hausdorff_bound;
 }
@@ -512,12 +508,10 @@ void Remesher::meet_error() {
     if (kept && 2 * kept->statistics.mended_triangles < faces) return keep(std::move(*kept));
     // Mostly triangles of the input: all of them, thinned out, may be fewer.
     if (kept) best_.emplace(kept->draft);
-    const RemeshStatistics before = result_.statistics;
     give_input_within_error();
     if (control_.cancelled() || !kept) return;
     if (result_.outcome == Outcome::done && result_.statistics.faces < faces) return;
     result_.outcome = Outcome::done;
-    result_.statistics.stage_seconds = before.stage_seconds;
     keep(std::move(*kept));
 }
 

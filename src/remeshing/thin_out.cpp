@@ -9,7 +9,7 @@
 #include <cmath>
 #include <queue>
 
-#include "core/vector3.h"
+#include "remeshing/segment_distance.h"
 
 namespace certa::remeshing {
 namespace {
@@ -163,11 +163,6 @@ private:
     }
     /// On the curve of v, the neighbour that w is not.
     Index beyond(Index v, Index w) const { return creases_[v][creases_[v][0].first == w ? 1 : 0].first; }
-    static double distance_to_segment(const Point3& p, const Point3& a, const Point3& b) {
-        const Point3 d = b - a;
-        const double length = dot(d, d), s = length > 0.0 ? std::clamp(dot(p - a, d) / length, 0.0, 1.0) : 0.0;
-        return norm(p - a - s * d);
-    }
     /// Triangle t with v moved to w.
     bool is_sound(Index t, Index v, Index w) const {
         std::array<Index, 3> moved = patch_.triangles[t];

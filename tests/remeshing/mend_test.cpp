@@ -1,6 +1,7 @@
 // Finding what is broken, patches of the input, and mending: judged by what shares no code with it.
 #include "remeshing/mend.h"
 
+#include <certa/io.h>
 #include <certa/surface_check.h>
 #include <gtest/gtest.h>
 
@@ -10,25 +11,12 @@
 #include "core/random.h"
 #include "core/vector3.h"
 #include "mesh/generators_surfaces.h"
+#include "remeshing/coarse_meshes.h"
 #include "remeshing/templates.h"
 #include "remeshing/trace_lines.h"
 
 namespace certa::remeshing {
 namespace {
-
-PolygonMesh polygons_of(const CoarseMesh& mesh) {
-    PolygonMesh out{mesh.points, {}, mesh.offsets};
-    for (const Index v : mesh.corners) out.corners.push_back(VertexId{v});
-    return out;
-}
-PolygonMesh polygons_of(const TriangleMesh& mesh) {
-    PolygonMesh out{mesh.positions, {}, {0}};
-    for (const Triangle& t : mesh.triangles) {
-        out.corners.insert(out.corners.end(), t.begin(), t.end());
-        out.offsets.push_back(static_cast<std::uint32_t>(out.corners.size()));
-    }
-    return out;
-}
 
 /// A network on a surface and its polygons.
 struct Fixture {
@@ -183,12 +171,12 @@ TEST(Mend, RepairsWhatIsSpoilt) {
         const Point3 a = mesh.points[ring[0]], c = mesh.points[ring[2]];
         mesh.points[ring[0]] = torus.tree->find_nearest(c + 0.3 * (c - a)).point;
     }
-    EXPECT_FALSE(check_surface(polygons_of(mesh), polygons_of(surface)).ok());
+    EXPECT_FALSE(check_surface(polygon_mesh(mesh), make_polygon_mesh(surface)).ok());
     const MendingReport report =
         mend(torus.layout(), torus.judge(), {.tolerance = 1e-3 * torus.mesh.diagonal}, mesh, {});
     EXPECT_TRUE(report.left.empty());
     EXPECT_GE(report.regions, 1U);
-    const SurfaceCheck check = check_surface(polygons_of(mesh), polygons_of(surface));
+    const SurfaceCheck check = check_surface(polygon_mesh(mesh), make_polygon_mesh(surface));
     for (const Violation& violation : check.violations) ADD_FAILURE() << violation.promise << ": " << violation.message;
     EXPECT_EQ(check.mesh.components.size(), 1U);
     EXPECT_EQ(check.mesh.components[0].genus, 1);
@@ -208,12 +196,12 @@ TEST(Mend, BringsFarPolygonsWithinTheError) {
     const Fixture torus(surface, 6e-3);
     CoarseMesh mesh = torus.polygons;
     const double error = 9e-3 * torus.mesh.diagonal;
-    EXPECT_GT(measure_distance(polygons_of(mesh), polygons_of(surface)).hausdorff_bound, error);
+    EXPECT_GT(measure_distance(polygon_mesh(mesh), make_polygon_mesh(surface)).hausdorff_bound, error);
     const MendingRule rule{.tolerance = 0.5 * error, .side_tolerance = error, .error = error};
     const MendingReport report = mend(torus.layout(), torus.judge(), rule, mesh, {});
     EXPECT_GT(report.cut_faces + report.faces, 0U);
     // What is proved is that, whatever way the polygons are filled; the proof is good to 2 %.
-    EXPECT_LE(measure_distance(polygons_of(mesh), polygons_of(surface)).hausdorff_bound, 1.02 * error);
+    EXPECT_LE(measure_distance(polygon_mesh(mesh), make_polygon_mesh(surface)).hausdorff_bound, 1.02 * error);
 }
 
 TEST(ThinInput, KeepsCornersCreasesAndGenus) {
@@ -227,7 +215,7 @@ TEST(ThinInput, KeepsCornersCreasesAndGenus) {
     const Fixture torus(surface, 6e-3);
     const CoarseMesh few = thin_input(torus.mesh, torus.judge(), 2e-3 * torus.mesh.diagonal, 0, {});
     EXPECT_LT(few.points.size(), 9 * torus.mesh.points.size() / 10);
-    const SurfaceCheck check = check_surface(polygons_of(few), polygons_of(surface));
+    const SurfaceCheck check = check_surface(polygon_mesh(few), make_polygon_mesh(surface));
     EXPECT_TRUE(check.ok());
     EXPECT_LT(check.distance.hausdorff, 4e-3 * torus.mesh.diagonal);
 }

@@ -1,6 +1,7 @@
 // Short sides that go, triangles that become quads, faces that are no disks: what may go goes, and the mesh stays one.
 #include "remeshing/merge_ends.h"
 
+#include <certa/io.h>
 #include <certa/remeshing.h>
 #include <certa/surface_check.h>
 #include <gtest/gtest.h>
@@ -117,15 +118,6 @@ TEST(MergeEnds, ATriangleOnTheSideGoes) {
     EXPECT_EQ(shape.components[0].boundary_loops, 1U);
 }
 
-PolygonMesh polygons_of(const TriangleMesh& mesh) {
-    PolygonMesh out{mesh.positions, {}, {0}};
-    for (const Triangle& t : mesh.triangles) {
-        out.corners.insert(out.corners.end(), t.begin(), t.end());
-        out.offsets.push_back(static_cast<std::uint32_t>(out.corners.size()));
-    }
-    return out;
-}
-
 TEST(Stitch, SheetsAtOneEdgeAreOneMeshAgain) {
     // Three half-planes at the z axis, of 4 x 4 squares each: their common edge has three triangles on each side.
     TriangleMesh book;
@@ -146,7 +138,7 @@ TEST(Stitch, SheetsAtOneEdgeAreOneMeshAgain) {
     EXPECT_EQ(result.mesh.positions.size(), 8U);
     EXPECT_EQ(result.statistics.faces, 3U);
     EXPECT_GT(result.statistics.non_manifold_edges, 0U);
-    const SurfaceCheck check = check_surface(result.mesh, polygons_of(book));
+    const SurfaceCheck check = check_surface(result.mesh, make_polygon_mesh(book));
     for (const Violation& violation : check.violations) ADD_FAILURE() << violation.message;
 }
 
@@ -207,7 +199,7 @@ TriangleMesh sheet_with_holes(double height) {
 TEST(OpenFaces, AFlatPlateWithHolesNeedsItsCornersOnly) {
     const TriangleMesh sheet = sheet_with_holes(0.0);
     const RemeshResult result = remesh(sheet);
-    EXPECT_TRUE(check_surface(result.mesh, polygons_of(sheet)).ok());
+    EXPECT_TRUE(check_surface(result.mesh, make_polygon_mesh(sheet)).ok());
     EXPECT_EQ(result.statistics.vertices, 12U);  // of the sheet and of two holes
     EXPECT_LE(result.statistics.faces, 9U);      // 14 triangles, most of them in pairs
     EXPECT_GE(result.statistics.quads, 5U);
@@ -220,7 +212,7 @@ TEST(OpenFaces, ACurvedPlateWithHolesKeepsThem) {
         RemeshOptions options;
         options.vertices = count;
         const RemeshResult result = remesh(sheet, options);
-        const SurfaceCheck check = check_surface(result.mesh, polygons_of(sheet));
+        const SurfaceCheck check = check_surface(result.mesh, make_polygon_mesh(sheet));
         for (const Violation& violation : check.violations) ADD_FAILURE() << count << ": " << violation.message;
         EXPECT_EQ(check.mesh.components.size(), 1U);
         EXPECT_EQ(check.mesh.components[0].boundary_loops, 3U);

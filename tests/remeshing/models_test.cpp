@@ -12,15 +12,6 @@
 namespace certa {
 namespace {
 
-PolygonMesh polygons_of(const TriangleMesh& mesh) {
-    PolygonMesh out{mesh.positions, {}, {0}};
-    for (const Triangle& t : mesh.triangles) {
-        out.corners.insert(out.corners.end(), t.begin(), t.end());
-        out.offsets.push_back(static_cast<std::uint32_t>(out.corners.size()));
-    }
-    return out;
-}
-
 /// Clean: manifold, oriented, and nowhere in contact with itself.
 TEST(RemeshModelsLong, AreSoundAtDefaultOptions) {
     const char* folder = std::getenv("CERTA_MODELS");
@@ -35,7 +26,7 @@ TEST(RemeshModelsLong, AreSoundAtDefaultOptions) {
     for (const auto& file : files) {
         SCOPED_TRACE(file.filename());
         const TriangleMesh input = triangulate(read_document(file.string())).mesh;
-        const PolygonMesh polygons = polygons_of(input);
+        const PolygonMesh polygons = make_polygon_mesh(input);
         if (!compute_surface_shape(polygons).is_oriented() || !find_contacts(polygons).empty()) continue;
         ++clean;
         const RemeshResult result = remesh(input);

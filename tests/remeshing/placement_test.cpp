@@ -1,6 +1,7 @@
 // Placement lowers the distance by what theory promises, keeps what is fixed where it is, and folds nothing.
 #include "remeshing/placement.h"
 
+#include <certa/io.h>
 #include <certa/surface_check.h>
 #include <gtest/gtest.h>
 
@@ -25,15 +26,9 @@ TriangleMesh triangle_mesh(const PolygonMesh& mesh) {
         triangles.triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
     return triangles;
 }
-PolygonMesh polygons_of(const TriangleMesh& mesh) {
-    PolygonMesh polygons;
-    polygons.positions = mesh.positions;
-    for (const Triangle& t : mesh.triangles) test::add_polygon(polygons, {t[0], t[1], t[2]});
-    return polygons;
-}
 
 double error(const CoarseMesh& coarse, const TriangleMesh& input) {
-    return measure_distance(polygon_mesh(coarse), polygons_of(input), {.samples = 20000, .bound = false}).rms;
+    return measure_distance(polygon_mesh(coarse), make_polygon_mesh(input), {.samples = 20000, .bound = false}).rms;
 }
 
 /// Cosine between each triangle and the nearest triangle of the input, the least.
