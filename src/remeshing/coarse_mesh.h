@@ -44,6 +44,8 @@ struct CoarseMesh {
     std::vector<FeatureEdge> feature_edges;  ///< sides of polygons that cover the feature curves of the input
     std::vector<Index> parents;              ///< per polygon: the face of the graph that it is a piece of; or empty
 
+    std::vector<std::array<Index, 2>> joined;  ///< parents of which a polygon covers parts in common
+
     std::size_t polygon_count() const { return offsets.size() - 1; }
     std::span<const Index> polygon(std::size_t i) const {
         return {corners.data() + offsets[i], static_cast<std::size_t>(offsets[i + 1] - offsets[i])};

@@ -72,9 +72,9 @@ public:
           mesh_(layout.network.mesh()),
           judge_(judge),
           rule_(rule),
-          base_(mesh),
-          out_(mesh),
           control_(control),
+          base_(join(mesh)),
+          out_(mesh),
           is_fixed_(fixed_vertices(mesh_)),
           patcher_(layout) {
         in_set_.assign(patcher_.face_count(), 0);
@@ -129,10 +129,22 @@ private:
         std::size_t triangles = 0;
     };
 
+    /// A polygon that covers parts of several faces goes as a whole.
+    void take_joined() {
+        for (bool again = true; again;) {
+            again = false;
+            for (const auto& [f, g] : base_.joined) {
+                again = again || in_set_[f] != in_set_[g];
+                in_set_[f] = in_set_[g] = std::max(in_set_[f], in_set_[g]);
+            }
+        }
+    }
+
     /// Connected faces of the set, each with a patch: regions without one grow until they have.
     void find_regions() {
         for (bool again = true; again;) {
             again = false;
+            take_joined();
             regions_.clear();
             region_of_.assign(in_set_.size(), no_index);
             for (Index seed = 0; seed < in_set_.size(); ++seed) {
@@ -277,14 +289,36 @@ private:
                 return;
             }
             // Nothing is paired around what that has broken.
-            std::vector<std::uint8_t> is_bad(result_.points.size(), 0);
-            for (const Index q : damage.polygons)
-                for (const Index v : paired.polygon(q)) is_bad[v] = 1;
+            const std::vector<std::uint8_t> is_bad = mark_corners(damage.polygons, paired);
             for (std::size_t q = 0; q < group.size(); ++q) {
                 const auto ring = result_.polygon(q);
                 if (std::any_of(ring.begin(), ring.end(), [&](Index v) { return is_bad[v] != 0; })) group[q] = no_index;
             }
         }
+    }
+
+    /// T-nodes near each other cancel where that does no harm and is not too far.
+    CoarseMesh join(const CoarseMesh& mesh) const {
+        std::vector<Recut> recuts = rule_.recuts;
+        while (!recuts.empty() && !control_.cancelled()) {
+            CoarseMesh joined = recut(mesh, recuts), looked_at = joined;
+            std::vector<Index> damaged = find_damage(judge_, looked_at, control_).polygons;
+            if (rule_.error > 0.0) add_far(looked_at, damaged);
+            const std::vector<std::uint8_t> is_bad = mark_corners(damaged, looked_at);
+            const std::size_t gone = std::erase_if(recuts, [&](const Recut& r) {
+                return std::any_of(r.after.begin(), r.after.end(), [&](const std::vector<Index>& ring) {
+                    return std::all_of(ring.begin(), ring.end(), [&](Index v) { return is_bad[v] != 0; });
+                });
+            });
+            if (gone == 0) return joined;
+        }
+        return mesh;
+    }
+    static std::vector<std::uint8_t> mark_corners(const std::vector<Index>& polygons, const CoarseMesh& mesh) {
+        std::vector<std::uint8_t> is_marked(mesh.points.size(), 0);
+        for (const Index q : polygons)
+            for (const Index v : mesh.polygon(q)) is_marked[v] = 1;
+        return is_marked;
     }
 
     /// Sides that two polygons walk in the same direction, where a cut has repeated one, and sides that only one walks
@@ -332,7 +366,7 @@ private:
             // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
             add_missed_creases(broken, 0.94 * bound());
         }
-        if (rule_.error > 0.0) add_far(apart);
+        if (rule_.error > 0.0) add_far(result_, apart);
         bool has_changed = cut(apart, broken);
         std::sort(broken.begin(), broken.end());
         broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
@@ -440,16 +474,16 @@ private:
         }
         return farthest;
     }
-    PolygonMesh result_as_polygons() const {
-        PolygonMesh mesh{result_.points, {}, result_.offsets};
-        for (const Index v : result_.corners) mesh.corners.push_back(VertexId{v});
+    static PolygonMesh as_polygons(const CoarseMesh& coarse) {
+        PolygonMesh mesh{coarse.points, {}, coarse.offsets};
+        for (const Index v : coarse.corners) mesh.corners.push_back(VertexId{v});
         return mesh;
     }
     /// The proved distance of the result, for every way to fill its polygons.
     double bound() const {
         DistanceOptions options;
         options.samples = 10000;
-        return measure_distance(result_as_polygons(), make_polygon_mesh(judge_.input), options, control_)
+        return measure_distance(as_polygons(result_), make_polygon_mesh(judge_.input), options, control_)
             .hausdorff_bound;
     }
 
@@ -468,10 +502,10 @@ private:
     }
 
     /// Polygons where the error is not kept.
-    void add_far(std::vector<Index>& apart) const {
+    void add_far(const CoarseMesh& mesh, std::vector<Index>& apart) const {
         constexpr std::uint64_t pieces = 200000;
         for (const FarPlace& place :
-             find_far_places(result_as_polygons(), make_polygon_mesh(judge_.input), rule_.error, pieces, control_))
+             find_far_places(as_polygons(mesh), make_polygon_mesh(judge_.input), rule_.error, pieces, control_))
             apart.push_back(place.is_on_first ? place.polygon : place.nearest);
     }
     /// What is too far is cut along its best diagonals first; triangles are broken. True: something was cut.
@@ -496,9 +530,9 @@ private:
     const Judge& judge_;
     const MendingRule& rule_;
     static constexpr double huge = std::numeric_limits<double>::infinity();
+    const RunControl& control_;
     const CoarseMesh base_;
     CoarseMesh& out_;
-    const RunControl& control_;
     const std::vector<std::uint8_t> is_fixed_;
     RegionPatcher patcher_;
 

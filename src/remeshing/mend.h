@@ -1,6 +1,7 @@
 #pragma once
 // The last stage before a result: what is broken becomes input again, as little of it as will do.
 #include "remeshing/damage.h"
+#include "remeshing/join_triangles.h"
 #include "remeshing/region_patch.h"
 
 namespace certa::remeshing {
@@ -12,6 +13,7 @@ struct MendingRule {
     double error = 0.0;           ///< polygons farther than this are broken, too; 0: any distance will do
     double reach = 0.0;           ///< how far a minor crease may be from the result; 0: as far as anything is
     bool all_triangles = false;   ///< neighbours that get more corners become triangles, else also quads
+    std::vector<Recut> recuts = {};  ///< of the polygons, to be done first, where they do no harm
 };
 
 struct MendingReport {

@@ -13,7 +13,7 @@
 namespace certa::remeshing {
 namespace {
 
-constexpr double smooth_share = 0.3;  ///< of the reach, for sides that are on no feature
+constexpr double smooth_share = 0.5;  ///< of the reach, for sides that are on no feature
 
 /// A side on a feature curve, and the nodes that it has swallowed.
 struct CurveSide {

@@ -13,7 +13,7 @@ struct MergedVertex {
 };
 
 /// Contracts sides on features that are shorter than `reach` (per vertex; the smaller of the two ends counts), and
-/// others that are shorter than a third of it, shortest first. Lines of both families, and those on either side of a
+/// others that are shorter than half of it, shortest first. Lines of both families, and those on either side of a
 /// crease, end where they happen to: one vertex does for two of them. Corners stay; a side keeps to the rule's errors
 /// of the nodes that were on it.
 ///

@@ -112,7 +112,7 @@ private:
     void refine(const Flaws& flaws, const Draft& draft, const Spacing& spacing);
     void merge_ends(Draft& draft, const Spacing& spacing) const;
     void add_samples(Draft& draft, const Spacing& spacing) const;
-    double count_of(const Draft& draft) const;
+    double count_of(const Draft& draft);
     double wanted_count() const {
         return static_cast<double>(options_.vertices ? *options_.vertices : options_.faces.value_or(0));
     }
@@ -163,6 +163,7 @@ private:
     double balance_ = 1.0;  ///< see SpacingRule
     CoarseMesh placed_;     ///< what `finish` has made, but for open faces ...
     CoarseMesh filled_;     ///< ... and with them
+    std::vector<Recut> recuts_;
     std::optional<Draft> best_;
 };
 
@@ -172,6 +173,7 @@ SpacingRule Remesher::rule_of(double error) const {
     rule.isotropy = options_.isotropy;
     rule.transfer = options_.transfer;
     rule.balance = balance_;
+    if (options_.vertices || options_.faces) rule.evening = 0.25;
     if (options_.hyperbolic_spacing) rule.hyperbolic = std::numbers::sqrt2;
     if (options_.isotropic_samples == IsotropicSamples::all) rule.near_umbilics = 0.8;
     return rule;
@@ -343,12 +345,11 @@ Draft Remesher::draft(double error) {
     }
 }
 
-double Remesher::count_of(const Draft& draft) const {
+double Remesher::count_of(const Draft& draft) {
     if (!options_.faces) return static_cast<double>(draft.polygons.points.size() - draft.merged.size());
     // Cutting into quads and triangles adds faces.
-    return static_cast<double>(options_.output == RemeshOutput::polygons
-                                   ? draft.polygons.polygon_count()
-                                   : make_quad_dominant(draft.polygons).polygon_count());
+    return static_cast<double>(
+        (options_.output == RemeshOutput::polygons ? draft.polygons : cut(draft.polygons)).polygon_count());
 }
 
 /// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps, then one family
@@ -585,6 +586,7 @@ void Remesher::describe_polygons() {
 
 /// Cuts and places the polygons. False: there are none, because no network has only disks for faces.
 bool Remesher::finish() {
+    recuts_.clear();
     describe_polygons();
     if (!best_->flaws.empty()) return false;
     const CoarseMesh polygons = cut(best_->polygons);
@@ -598,7 +600,12 @@ bool Remesher::finish() {
         coarse.points = filled.points;
         coarse.places = filled.places;
     } else {
-        place(coarse);
+        // Placed as it will be cut in the end; a bound is proved before that, and asked again after it.
+        if (options_.output == RemeshOutput::quad_dominant && wanted_count() > 0.0) recuts_ = find_recuts(polygons);
+        CoarseMesh cut_anew = recut(coarse, recuts_);
+        place(cut_anew);
+        coarse.points = cut_anew.points;
+        coarse.places = cut_anew.places;
     }
     filled_ = std::move(coarse);
     placed_ = polygons;
@@ -606,6 +613,7 @@ bool Remesher::finish() {
         placed_.points[v] = filled_.points[v];
         placed_.places[v] = filled_.places[v];
     }
+    if (options_.output == RemeshOutput::quad_dominant && wanted_count() == 0.0) recuts_ = find_recuts(placed_);
     return true;
 }
 
@@ -625,12 +633,14 @@ MendingRule Remesher::mending_rule(double error) const {
     rule.error = error;
     rule.reach = error;
     rule.all_triangles = options_.output == RemeshOutput::triangles;
+    rule.recuts = recuts_;
     return rule;
 }
 
 CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
     Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
-    judge_input(mesh, judge);
+    CoarseMesh looked_at = recut(mesh, recuts_);
+    judge_input(looked_at, judge);
     const MendingReport report = mend(best_->layout(), judge, mending_rule(error), mesh, control_);
     RemeshStatistics& s = result_.statistics;
     s.mended_regions = report.regions;

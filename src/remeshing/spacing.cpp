@@ -6,6 +6,7 @@
 #include "remeshing/spacing.h"
 
 #include <algorithm>
+#include <cmath>
 #include <queue>
 
 namespace certa::remeshing {
@@ -53,6 +54,25 @@ std::vector<double> component_diagonals(const WorkMesh& mesh) {
     return diagonals;
 }
 
+/// What spacing is multiplied by so that areas a become a^(1 - evening), the number of cells staying as it is.
+std::vector<double> find_evening(const WorkMesh& mesh, std::array<std::vector<double>, 2> at, const SpacingRule& rule) {
+    for (auto& size : at) limit_growth(mesh, size, rule.growth);
+    double before = 0.0, after = 0.0;
+    for (Index f = 0; f < mesh.face_count(); ++f) {
+        const double area = mesh.local(f, 1).real() * mesh.local(f, 2).imag();
+        for (Index i = 0; i < 3; ++i) {
+            const Index w = mesh.wedges[3 * f + i];
+            const double cells = area / (at[0][w] * at[1][w]);
+            before += cells;
+            after += cells * std::pow(at[0][w] * at[1][w], rule.evening);
+        }
+    }
+    std::vector<double> factors(mesh.wedge_count());
+    for (Index w = 0; w < factors.size(); ++w)
+        factors[w] = std::sqrt(after / before * std::pow(at[0][w] * at[1][w], -rule.evening));
+    return factors;
+}
+
 }  // namespace
 
 double chord_of(double curvature, double largest, const SpacingRule& rule) {
@@ -90,13 +110,20 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
         const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
         spacing.curved[w] = std::max(spacing.at[0][w], spacing.at[1][w]) < 0.999 * largest;
     }
+    std::vector<double> evening;
+    if (rule.evening > 0.0) evening = find_evening(mesh, spacing.at, rule);
     for (std::size_t family = 0; family < 2; ++family) {
         const std::vector<double> raw = spacing.at[family];
+        for (Index w = 0; w < evening.size(); ++w) {
+            const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
+            spacing.at[family][w] = std::min(largest, evening[w] * raw[w]);
+        }
+        const std::vector<double> even = spacing.at[family];
         if (rule.near_umbilics < 1.0)
             for (const FieldUmbilic& u : field.umbilics)
                 for (Index c = 3 * u.face; c < 3 * u.face + 3; ++c) {
                     const Index w = mesh.wedges[c];
-                    spacing.at[family][w] = rule.near_umbilics * raw[w];
+                    spacing.at[family][w] = rule.near_umbilics * even[w];
                 }
         for (Index w = 0; w < caps.size(); ++w)
             if (caps[w] > 0.0) spacing.at[family][w] = std::min(spacing.at[family][w], caps[w]);

@@ -216,6 +216,10 @@ std::vector<std::vector<Index>> cut_into_quads(std::span<const Point3> ring) {
     return Cutter(ring).cut();
 }
 
+double cutting_cost(std::span<const Point3> piece) {
+    return Cutter(piece).cost_of(piece.size() == 3 ? Piece{0, 1, 2} : Piece{0, 1, 2, 3});
+}
+
 CoarseMesh make_quad_dominant(const CoarseMesh& mesh) {
     CoarseMesh result = mesh.without_polygons();
     for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {

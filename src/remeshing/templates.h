@@ -21,4 +21,7 @@ CoarseMesh limit_degree(const CoarseMesh& mesh, std::size_t most);
 /// make_quad_dominant does.
 std::vector<std::vector<Index>> cut_into_quads(std::span<const Point3> ring);
 
+/// The cost of one piece, of three or four corners.
+double cutting_cost(std::span<const Point3> piece);
+
 }  // namespace certa::remeshing

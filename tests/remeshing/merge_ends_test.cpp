@@ -14,7 +14,7 @@
 namespace certa::remeshing {
 namespace {
 
-/// A row of quads above the x axis; ends of lines at the given places of it, the boundary's curve.
+/// A row of quads above the x axis; ends of lines at the given places of it, the boundary's curve. Above they spread.
 CoarseMesh row(const std::vector<double>& below) {
     CoarseMesh mesh;
     const std::size_t n = below.size();
@@ -22,7 +22,7 @@ CoarseMesh row(const std::vector<double>& below) {
         const bool is_end = i == 0 || i + 1 == n;
         mesh.add_vertex({below[i], 0.0, 0.0}, {}, is_end ? VertexKind::corner : VertexKind::boundary, 0);
     }
-    for (std::size_t i = 0; i < n; ++i) mesh.add_vertex({below[i], 1.0, 0.0}, {});
+    for (std::size_t i = 0; i < n; ++i) mesh.add_vertex({4.0 * below[i], 1.0, 0.0}, {});
     for (Index i = 0; i + 1 < n; ++i) {
         const auto up = static_cast<Index>(n);
         mesh.add_polygon(std::array{i, i + 1, i + 1 + up, i + up});
@@ -71,7 +71,7 @@ TEST(MergeEnds, ChainsEndInOneVertex) {
     EXPECT_EQ(mesh.feature_edges.size(), 2U);
 }
 
-TEST(MergeEnds, OffFeaturesOnlyVeryShortSidesGo) {
+TEST(MergeEnds, OffFeaturesOnlyShorterSidesGo) {
     // Two rows: vertices 4 to 7 are inside, 5 and 6 next to each other.
     CoarseMesh mesh;
     for (const double y : {0.0, 1.0, 2.0})

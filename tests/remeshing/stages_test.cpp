@@ -334,6 +334,25 @@ TEST(Spacing, IsWiderInHyperbolicPartsOnDemand) {
     EXPECT_GT(saddles, 500U);
 }
 
+TEST(Spacing, EveningKeepsTheCountAndTheShapesOfCells) {
+    const Prepared p = prepare(generators::make_torus(2.0, 0.7, 4000, 1), 3.0);
+    SpacingRule rule;
+    rule.error = 1e-3 * p.mesh.diagonal;
+    rule.growth = 1e9;  // point by point
+    rule.largest = 1e9;
+    const Spacing plain = compute_spacing(p.mesh, p.field, rule, {});
+    rule.evening = 0.25;
+    const Spacing even = compute_spacing(p.mesh, p.field, rule, {});
+    EXPECT_NEAR(expected_vertices(p.mesh, even), expected_vertices(p.mesh, plain), 1e-6);
+    double factor = 0.0;
+    for (Index w = 0; w < p.mesh.wedge_count(); ++w) {
+        const double before = plain.at[0][w] * plain.at[1][w], after = even.at[0][w] * even.at[1][w];
+        EXPECT_NEAR(even.at[0][w] * plain.at[1][w], even.at[1][w] * plain.at[0][w], 1e-9);
+        if (w == 0) factor = after / std::pow(before, 0.75);
+        EXPECT_NEAR(after / std::pow(before, 0.75), factor, 1e-9 * factor);
+    }
+}
+
 struct Arranged {
     Network network;
     Graph graph;

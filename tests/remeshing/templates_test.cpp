@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "core/vector3.h"
 #include "remeshing/coarse_meshes.h"
+#include "remeshing/join_triangles.h"
 
 namespace certa::remeshing {
 namespace {
@@ -160,6 +161,99 @@ TEST(Templates, DegreesAreLimited) {
         }
         EXPECT_NEAR(sum, 18.5 * std::sin(2.0 * std::numbers::pi / 37.0), 1e-12);
     }
+}
+
+/// Two rows of squares with a line more in one column: it ends at y = 1 in column 1 of the lower row, and one starts
+/// there `shift` columns further: two T-nodes.
+CoarseMesh shifted_rows(Index shift) {
+    CoarseMesh mesh;
+    std::vector<double> columns;
+    for (Index i = 0; i < shift + 4; ++i) columns.push_back(i);
+    std::vector<double> below = columns, above = columns;
+    below.insert(below.begin() + 2, 1.5);
+    above.insert(above.begin() + 2 + shift, 1.5 + shift);
+    std::vector<double> between = below;
+    between.insert(between.end(), above.begin(), above.end());
+    std::sort(between.begin(), between.end());
+    between.erase(std::unique(between.begin(), between.end()), between.end());
+    std::map<std::pair<double, double>, Index> ids;
+    const auto id = [&](double x, double y) {
+        const auto [at, is_new] = ids.try_emplace({x, y}, 0);
+        if (is_new) at->second = mesh.add_vertex({x, y, 0.0}, {});
+        return at->second;
+    };
+    const auto add_row = [&](const std::vector<double>& bottom, double y, const std::vector<double>& top) {
+        const std::vector<double>& own = y == 0.0 ? bottom : top;
+        for (std::size_t i = 0; i + 1 < own.size(); ++i) {
+            std::vector<Index> ring;
+            const auto is_in = [&](double x) { return own[i] <= x && x <= own[i + 1]; };
+            for (const double x : bottom)
+                if (is_in(x)) ring.push_back(id(x, y));
+            for (auto x = top.rbegin(); x != top.rend(); ++x)
+                if (is_in(*x)) ring.push_back(id(*x, y + 1.0));
+            mesh.add_polygon(ring, static_cast<Index>(mesh.polygon_count()));
+        }
+    };
+    add_row(below, 0.0, between);
+    add_row(between, 1.0, above);
+    return mesh;
+}
+std::size_t triangles_of(const CoarseMesh& mesh) {
+    std::size_t count = 0;
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) count += mesh.polygon(q).size() == 3 ? 1 : 0;
+    return count;
+}
+double area(const CoarseMesh& mesh) {
+    double sum = 0.0;
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+        const auto ring = mesh.polygon(q);
+        sum += area(mesh.points, {ring.begin(), ring.end()});
+    }
+    return sum;
+}
+
+CoarseMesh join(const CoarseMesh& mesh) { return recut(mesh, find_recuts(mesh)); }
+
+TEST(JoinTriangles, TwoTNodesNearEachOtherCancel) {
+    for (const Index shift : {0U, 1U}) {
+        const CoarseMesh cut = make_quad_dominant(shifted_rows(shift));
+        EXPECT_EQ(triangles_of(cut), shift > 0 ? 2U : 0U) << shift;
+        const CoarseMesh joined = join(cut);
+        EXPECT_EQ(triangles_of(joined), 0U) << shift;
+        EXPECT_EQ(joined.points.size(), cut.points.size());
+        EXPECT_NEAR(area(joined), area(cut), 1e-12);
+        for (std::size_t q = 0; q < joined.polygon_count(); ++q) {
+            const auto ring = joined.polygon(q);
+            EXPECT_GT(area(joined.points, {ring.begin(), ring.end()}), 0.0);
+        }
+    }
+}
+
+TEST(JoinTriangles, TNodesFarFromEachOtherStay) {
+    EXPECT_EQ(triangles_of(join(make_quad_dominant(shifted_rows(6)))), 2U);
+}
+
+TEST(JoinTriangles, IsNotDoneWhereAPolygonIsGone) {
+    const CoarseMesh cut = make_quad_dominant(shifted_rows(1));
+    const std::vector<Recut> recuts = find_recuts(cut);
+    ASSERT_FALSE(recuts.empty());
+    CoarseMesh less = cut.without_polygons();
+    for (std::size_t q = 0; q < cut.polygon_count(); ++q) {
+        const auto ring = cut.polygon(q);
+        if (ring.size() == 4 || triangles_of(less) == 0) less.add_polygon(ring, cut.parent(q));
+    }
+    EXPECT_EQ(recut(less, recuts).corners, less.corners);
+}
+
+TEST(JoinTriangles, NothingGoesOverACreaseOrABend) {
+    CoarseMesh cut = make_quad_dominant(shifted_rows(1)), bent = cut;
+    for (Index v = 0; v < cut.points.size(); ++v)
+        for (Index w = 0; w < v; ++w)
+            if (cut.points[v].y == 1.0 && cut.points[w].y == 1.0) cut.feature_edges.push_back({v, w, 0});
+    EXPECT_EQ(triangles_of(join(cut)), 2U);
+    for (Point3& p : bent.points)
+        if (p.y > 1.0) p = {p.x, 1.0, 1.0};
+    EXPECT_EQ(triangles_of(join(bent)), 2U);
 }
 
 }  // namespace
