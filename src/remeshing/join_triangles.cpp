@@ -6,12 +6,14 @@
 #include "remeshing/join_triangles.h"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <unordered_map>
 
 #include "core/vector3.h"
 #include "remeshing/templates.h"
+#include "remeshing/triangulate.h"
 #include "remeshing/work_mesh.h"
 
 namespace certa::remeshing {
@@ -52,10 +54,59 @@ public:
             way_.assign(1, q);
             walk({ring.begin(), ring.end()});
         }
-        std::stable_sort(candidates_.begin(), candidates_.end(),
+        return choose(candidates_);
+    }
+    std::vector<Recut> run_far(const core::TriangleTree& input, double limit) {
+        const auto distance_of = [&](Index a, Index b) {
+            double farthest = 0.0;
+            for (const double s : {0.25, 0.5, 0.75})
+                farthest = std::max(
+                    farthest, input.find_nearest((1.0 - s) * mesh_.points[a] + s * mesh_.points[b]).squared_distance);
+            return std::sqrt(farthest);
+        };
+        std::vector<Candidate> far;
+        for (Index q = 0; q < mesh_.polygon_count(); ++q) {
+            const auto ring = mesh_.polygon(q);
+            for (std::size_t i = 0; i < ring.size(); ++i) {
+                const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+                const auto& beside = beside_.at(pair_key(a, b));
+                if (beside[0] != q || beside[1] == no_index) continue;
+                if (std::binary_search(features_.begin(), features_.end(), pair_key(a, b))) continue;
+                const double now = distance_of(a, b);
+                if (now <= limit) continue;
+                Candidate candidate{now, {q, beside[1]}, {}};
+                const Ring whole = unite({ring.begin(), ring.end()}, a, b, beside[1]);
+                if (!whole.empty() && cut_nearer(whole, input, 0.5 * now, distance_of, candidate.pieces))
+                    far.push_back(std::move(candidate));
+            }
+        }
+        return choose(far);
+    }
+
+private:
+    /// False: what is nearest to the input is not near enough, or turns away.
+    template <class Distance>
+    bool cut_nearer(const Ring& ring, const core::TriangleTree& input, double most, const Distance& distance_of,
+                    std::vector<Ring>& pieces) const {
+        std::vector<std::array<Index, 3>> triangles;
+        const std::vector<Point3> points = points_of(ring);
+        triangulate_polygon(mesh_.points, ring, input, triangles);
+        const Point3 normal = normal_of(points);
+        for (const auto& t : triangles) {
+            if (dot(normal_of(points_of(t)), normal) <= 0.0) return false;
+            for (std::size_t i = 0; i < 3; ++i)
+                if (!beside_.contains(pair_key(t[i], t[(i + 1) % 3])) && distance_of(t[i], t[(i + 1) % 3]) > most)
+                    return false;
+            pieces.emplace_back(t.begin(), t.end());
+        }
+        return true;
+    }
+    /// Those that gain most, a polygon in one at most.
+    std::vector<Recut> choose(std::vector<Candidate>& candidates) {
+        std::stable_sort(candidates.begin(), candidates.end(),
                          [](const Candidate& l, const Candidate& r) { return l.gain > r.gain; });
         std::vector<Recut> chosen;
-        for (Candidate& candidate : candidates_) {
+        for (Candidate& candidate : candidates) {
             if (std::any_of(candidate.old.begin(), candidate.old.end(), [&](Index q) { return is_used_[q] != 0; }))
                 continue;
             if (!add_sides(candidate)) continue;
@@ -69,8 +120,6 @@ public:
         }
         return chosen;
     }
-
-private:
     /// Goes on over every side of the last polygon of the way; `ring` is the union so far.
     void walk(const Ring& ring) {
         const auto last = mesh_.polygon(way_.back());
@@ -228,6 +277,10 @@ std::vector<Recut> find_recuts(const CoarseMesh& mesh) {
         std::move(next.begin(), next.end(), std::back_inserter(all));
     }
     return all;
+}
+
+std::vector<Recut> find_far_recuts(const CoarseMesh& mesh, const core::TriangleTree& input, double limit) {
+    return Joiner(mesh).run_far(input, limit);
 }
 
 }  // namespace certa::remeshing

@@ -1,5 +1,6 @@
 #pragma once
 // Fewer triangles than T-nodes ask for: two that are near each other become quads with what lies between them.
+#include "core/triangle_tree.h"
 #include "remeshing/coarse_mesh.h"
 
 namespace certa::remeshing {
@@ -14,6 +15,10 @@ struct Recut {
 /// gives quads only, well shaped, and nothing is bent by more than 30 degrees. Sides on features stay, and all
 /// vertices. Deterministic.
 std::vector<Recut> find_recuts(const CoarseMesh& mesh);
+
+/// Two polygons whose common side passes the input by more than `limit`: triangles, where they have diagonals that are
+/// half as far at most. Nothing turns away. Deterministic.
+std::vector<Recut> find_far_recuts(const CoarseMesh& mesh, const core::TriangleTree& input, double limit);
 
 /// Does those, in order, of which all polygons are there. Faces of the graph that share pieces are listed in `joined`.
 CoarseMesh recut(const CoarseMesh& mesh, const std::vector<Recut>& recuts);

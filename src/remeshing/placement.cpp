@@ -28,6 +28,8 @@ using core::NearestPoint;
 using core::TriangleTree;
 
 constexpr double least_agreement = 0.25;  // cosine between the normals of the two ends of a pair
+constexpr double sideways = 0.7;          // cosine between the way to the nearest point and the normal there
+constexpr double samples_per_side = 6.0, curve_weight = 0.3;  // of samples of creases and the boundary
 constexpr int half_steps = 5;
 
 /// The point of triangle `triangle` with weights w, and what is over there.
@@ -158,7 +160,28 @@ private:
             input_samples_.push_back(
                 {(1.0 - root) * position(c[0]) + root * (1.0 - v) * position(c[1]) + root * v * position(c[2]), t});
         }
-        hints_of_input_samples_.assign(count, no_index);
+        surface_samples_ = count;
+        sample_curves();
+        hints_of_input_samples_.assign(input_samples_.size(), no_index);
+    }
+    /// Points of creases and the boundary: samples of the surface miss how far these are off.
+    void sample_curves() {
+        double length = 0.0, done = 0.0, next = 0.5;
+        for (const Curve& curve : curves_)
+            for (const Triangle& s : curve.segments)
+                length += distance(curve.points[index_of(s[0])], curve.points[index_of(s[1])]);
+        const double step = length / (samples_per_side * double(std::max<std::size_t>(mesh_.feature_edges.size(), 1)));
+        for (const Curve& curve : curves_)
+            for (const Triangle& s : curve.segments) {
+                const Point3 &a = curve.points[index_of(s[0])], &b = curve.points[index_of(s[1])];
+                const double here = distance(a, b) / step;
+                for (; next < done + here; next += 1.0) {
+                    const double t = (next - done) / here;
+                    const Point3 p = (1.0 - t) * a + t * b;
+                    input_samples_.push_back({p, tree_->find_nearest(p).triangle});
+                }
+                done += here;
+            }
     }
 
     struct Sample {
@@ -228,7 +251,8 @@ private:
                 pair.triangle = nearest.triangle;
                 pair.w = nearest.weights;
                 fill(pair, nearest.point, p, std::sqrt(nearest.squared_distance), normals_[face]);
-                pair.weight *= 0.5 / double(input_samples_.size());
+                if (s >= surface_samples_) pair.weight = curve_weight;
+                pair.weight *= 0.5 / double(surface_samples_);
             }
         });
     }
@@ -237,6 +261,11 @@ private:
         pair.along = dot(normal, coarse - input);
         pair.distance = distance;
         pair.weight = dot(normal, coarse_normals_[pair.triangle]) >= least_agreement ? 1.0 : 0.0;
+        // Beside creases and the boundary the distance goes sideways.
+        if (distance > 1e-9 && std::abs(pair.along) < sideways * distance) {
+            pair.normal = (1.0 / distance) * (coarse - input);
+            pair.along = distance;
+        }
     }
 
     /// All pairs for the mesh as it is, and the objective.
@@ -552,7 +581,8 @@ private:
     std::vector<double> coarse_areas_;
     std::vector<Point3> coarse_normals_;
     std::vector<Sample> lattice_;
-    std::vector<std::pair<Point3, Index>> input_samples_;
+    std::vector<std::pair<Point3, Index>> input_samples_;  // of the surface, then of the curves
+    std::size_t surface_samples_ = 0;
     std::vector<Index> hints_, hints_of_input_samples_;
     std::vector<Pair> pairs_;
     double rms_ = 0.0, largest_ = 0.0, objective_ = 0.0;

@@ -143,7 +143,8 @@ private:
     void give_input(double tolerance);
     void finish_count();
     void emit(const CoarseMesh& mesh);
-    void place(CoarseMesh& mesh);
+    PlacementReport place(CoarseMesh& mesh, const PlacementOptions& options = {});
+    void place_and_cut(const CoarseMesh& polygons, CoarseMesh& coarse);
     CoarseMesh cut(const CoarseMesh& polygons);
     void describe_lines();
     void describe_polygons();
@@ -549,8 +550,8 @@ void Remesher::describe_lines() {
 }
 
 /// Vertices of the input's own curves, for placement along them.
-void Remesher::place(CoarseMesh& mesh) {
-    if (!options_.placement) return;
+PlacementReport Remesher::place(CoarseMesh& mesh, const PlacementOptions& options) {
+    if (!options_.placement) return {};
     std::vector<FeatureEdge> features;
     for (Index e = 0; e < mesh_.edge_curves.size(); ++e) {
         const Index h = mesh_.edge_halfedges[e];
@@ -558,8 +559,9 @@ void Remesher::place(CoarseMesh& mesh) {
             features.push_back({mesh_.start_of(h), mesh_.end_of(h), mesh_.edge_curves[e]});
     }
     control_.report("placement", 0.9);
-    place_vertices(input_, features, mesh, {}, control_);
+    PlacementReport report = place_vertices(input_, features, mesh, options, control_);
     watch_.stage("placement");
+    return report;
 }
 
 CoarseMesh Remesher::cut(const CoarseMesh& polygons) {
@@ -584,6 +586,37 @@ void Remesher::describe_polygons() {
     s.quad_share_without_t = static_cast<double>(best_->counts.quads_without_t) / polygons;
 }
 
+/// Placed as it will be cut in the end, which is clear after a few rounds; where sides are far off after all of them,
+/// once more. (A bound is proved before polygons are cut anew, and asked again after it.)
+void Remesher::place_and_cut(const CoarseMesh& polygons, CoarseMesh& coarse) {
+    PlacementOptions options;
+    options.rounds = 4;
+    options.peak_rounds = 0;
+    CoarseMesh cut = coarse, known = polygons;  // with open faces, and without
+    const auto place_all = [&](double far) {
+        const double rms = place(cut, options).rms_after;
+        std::copy_n(cut.points.begin(), known.points.size(), known.points.begin());
+        const std::vector<Recut> recuts = find_far_recuts(recut(known, recuts_), *tree_, far * rms);
+        recuts_.insert(recuts_.end(), recuts.begin(), recuts.end());
+        return !recuts.empty();
+    };
+    place_all(4.0);
+    const std::vector<Recut> joins = find_recuts(recut(known, recuts_));
+    recuts_.insert(recuts_.end(), joins.begin(), joins.end());
+    options = {};
+    options.rounds = 9;
+    for (int round = 0; round < 2; ++round) {
+        std::swap(cut.points, coarse.points);
+        std::swap(cut.places, coarse.places);
+        cut = recut(coarse, recuts_);
+        if (!place_all(8.0)) break;
+        options.rounds = 1;
+        options.peak_rounds = 4;
+    }
+    coarse.points = cut.points;
+    coarse.places = cut.places;
+}
+
 /// Cuts and places the polygons. False: there are none, because no network has only disks for faces.
 bool Remesher::finish() {
     recuts_.clear();
@@ -600,12 +633,11 @@ bool Remesher::finish() {
         coarse.points = filled.points;
         coarse.places = filled.places;
     } else {
-        // Placed as it will be cut in the end; a bound is proved before that, and asked again after it.
-        if (options_.output == RemeshOutput::quad_dominant && wanted_count() > 0.0) recuts_ = find_recuts(polygons);
-        CoarseMesh cut_anew = recut(coarse, recuts_);
-        place(cut_anew);
-        coarse.points = cut_anew.points;
-        coarse.places = cut_anew.places;
+        if (options_.output == RemeshOutput::quad_dominant && wanted_count() > 0.0 && options_.placement) {
+            place_and_cut(polygons, coarse);
+        } else {
+            place(coarse);
+        }
     }
     filled_ = std::move(coarse);
     placed_ = polygons;
@@ -613,7 +645,8 @@ bool Remesher::finish() {
         placed_.points[v] = filled_.points[v];
         placed_.places[v] = filled_.places[v];
     }
-    if (options_.output == RemeshOutput::quad_dominant && wanted_count() == 0.0) recuts_ = find_recuts(placed_);
+    const bool is_cut_anew = wanted_count() > 0.0 && options_.placement;
+    if (options_.output == RemeshOutput::quad_dominant && !is_cut_anew) recuts_ = find_recuts(placed_);
     return true;
 }
 
