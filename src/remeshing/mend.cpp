@@ -19,6 +19,7 @@
 
 #include "core/parallel.h"
 #include "core/vector3.h"
+#include "remeshing/missed_creases.h"
 #include "remeshing/pair_triangles.h"
 #include "remeshing/templates.h"
 #include "remeshing/thin_out.h"
@@ -361,10 +362,12 @@ private:
         add_odd_sides(broken);
         std::vector<Index> apart;
         if (rule_.reach > 0.0) {
-            add_missed_creases(apart, 0.9 * rule_.reach);
-        } else if (broken.empty() && add_missed_creases(broken, huge) > 0.9 * reach() && !control_.cancelled()) {
+            add_missed_creases(mesh_, judge_, result_, 0.9 * rule_.reach, apart);
+        } else if (broken.empty() &&
+                   add_missed_creases(mesh_, judge_, result_, huge, broken) > 0.9 * reach_of(mesh_, judge_, result_) &&
+                   !control_.cancelled()) {
             // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
-            add_missed_creases(broken, 0.94 * bound());
+            add_missed_creases(mesh_, judge_, result_, 0.94 * bound(), apart);
         }
         if (rule_.error > 0.0) add_far(result_, apart);
         bool has_changed = cut(apart, broken);
@@ -433,47 +436,6 @@ private:
         return all ? patcher_.grow(grown) : grown;
     }
 
-    /// Creases and minor corners that nothing of the result is as near as `limit`: the polygons below them. Returns how
-    /// far the farthest is.
-    double add_missed_creases(std::vector<Index>& broken, double limit) const {
-        if (mesh_.minor_edges.empty() && mesh_.minor_corners.empty() && mesh_.curves.empty()) return 0.0;
-        std::vector<Triangle> edges, vertices, filled;
-        const auto id = [](Index v) { return VertexId{v}; };
-        std::vector<Index> polygon_of;
-        const CoarseMesh triangles = make_triangles(result_, judge_.tree);
-        for (std::size_t q = 0; q < result_.polygon_count(); ++q) {
-            const auto ring = result_.polygon(q);
-            polygon_of.insert(polygon_of.end(), ring.size() - 2, static_cast<Index>(q));
-            for (std::size_t i = 0; i < ring.size(); ++i) {
-                edges.push_back({id(ring[i]), id(ring[(i + 1) % ring.size()]), id(ring[(i + 1) % ring.size()])});
-                vertices.push_back({id(ring[i]), id(ring[i]), id(ring[i])});
-            }
-        }
-        for (std::size_t q = 0; q < triangles.polygon_count(); ++q) {
-            const auto t = triangles.polygon(q);
-            filled.push_back({id(t[0]), id(t[1]), id(t[2])});
-        }
-        const core::TriangleTree edge_tree(result_.points, edges), vertex_tree(result_.points, vertices),
-            surface(result_.points, filled);
-        double farthest = 0.0;
-        const auto demand = [&](const core::TriangleTree& tree, const Point3& p) {
-            const double away = std::sqrt(tree.find_nearest(p).squared_distance);
-            farthest = std::max(farthest, away);
-            if (away > limit) broken.push_back(polygon_of[surface.find_nearest(p).triangle]);
-        };
-        for (const Index v : mesh_.minor_corners) demand(vertex_tree, mesh_.points[v]);
-        std::vector<Index> creases = mesh_.minor_edges;
-        for (Index e = 0; e < mesh_.edge_curves.size(); ++e)
-            if (mesh_.edge_curves[e] != no_index) creases.push_back(e);
-        double total = 0.0;
-        for (const Index e : creases) total += mesh_.lengths[e];
-        for (const Index e : creases) {
-            constexpr double samples = 20000.0;
-            const double steps = 4.0 + std::ceil(samples * mesh_.lengths[e] / total);
-            for (double k = 0.0; k <= steps; k += 1.0) demand(edge_tree, mesh_.point_on(e, k / steps));
-        }
-        return farthest;
-    }
     static PolygonMesh as_polygons(const CoarseMesh& coarse) {
         PolygonMesh mesh{coarse.points, {}, coarse.offsets};
         for (const Index v : coarse.corners) mesh.corners.push_back(VertexId{v});
@@ -485,20 +447,6 @@ private:
         options.samples = 10000;
         return measure_distance(as_polygons(result_), make_polygon_mesh(judge_.input), options, control_)
             .hausdorff_bound;
-    }
-
-    /// Of the input's vertices from the result: less than the bound.
-    double reach() const {
-        std::vector<Triangle> filled;
-        const CoarseMesh triangles = make_triangles(result_, judge_.tree);
-        for (std::size_t q = 0; q < triangles.polygon_count(); ++q) {
-            const auto t = triangles.polygon(q);
-            filled.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
-        }
-        const core::TriangleTree surface(result_.points, filled);
-        double square = 0.0;
-        for (const Point3& p : mesh_.points) square = std::max(square, surface.find_nearest(p).squared_distance);
-        return std::sqrt(square);
     }
 
     /// Polygons where the error is not kept.

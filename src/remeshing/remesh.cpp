@@ -16,10 +16,12 @@
 #include "core/parallel.h"
 #include "core/triangle_tree.h"
 #include "remeshing/cancel_umbilics.h"
+#include "remeshing/caps.h"
 #include "remeshing/crowded.h"
 #include "remeshing/guides.h"
 #include "remeshing/isotropic.h"
 #include "remeshing/mend.h"
+#include "remeshing/missed_creases.h"
 #include "remeshing/pair_triangles.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
@@ -72,7 +74,7 @@ void check_options(const RemeshOptions& options) {
 
 /// One network and what came of it.
 struct Draft {
-    double error = 0.0;
+    double knob = 0.0, error = 0.0;  ///< the error asked of lines, and the one that they were given
     Network network;
     Graph graph;
     std::vector<std::vector<Index>> faces;
@@ -89,11 +91,12 @@ struct Draft {
 
 class Remesher {
 public:
-    Remesher(const TriangleMesh& mesh, const RemeshOptions& options, const RunControl& control)
+    /// `edge_count`: see build_work_mesh.
+    Remesher(const TriangleMesh& mesh, const RemeshOptions& options, const RunControl& control, double edge_count = 0.0)
         : options_(options),
           control_(control),
           watch_(result_.statistics),
-          mesh_(build_work_mesh(mesh, options, result_.statistics)) {
+          mesh_(build_work_mesh(mesh, options, result_.statistics, edge_count)) {
         input_.positions = mesh_.points;
         for (const auto& f : mesh_.faces) input_.triangles.push_back({VertexId{f[0]}, VertexId{f[1]}, VertexId{f[2]}});
         tree_.emplace(input_.positions, input_.triangles);
@@ -109,7 +112,7 @@ private:
     double start_error(double count = 0.0);
     Draft draft(double error);
     std::vector<Index> open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const;
-    void refine(const Flaws& flaws, const Draft& draft, const Spacing& spacing);
+    std::vector<Index> broken_faces(const Draft& draft);
     void merge_ends(Draft& draft, const Spacing& spacing) const;
     void add_samples(Draft& draft, const Spacing& spacing) const;
     double count_of(const Draft& draft);
@@ -139,7 +142,7 @@ private:
     bool finish();
     MendingRule mending_rule(double error) const;
     CoarseMesh mended(CoarseMesh mesh, double error);
-    void judge_input(CoarseMesh& mesh, Judge& judge);
+    Damage judge_input(CoarseMesh& mesh, Judge& judge);
     void give_input(double tolerance);
     void finish_count();
     void emit(const CoarseMesh& mesh);
@@ -158,8 +161,7 @@ private:
     std::optional<core::TriangleTree> tree_;
     std::optional<bool> is_embedded_;  ///< the input, once it has been asked
     DirectionField field_;
-    std::vector<double> caps_;        ///< per wedge: largest spacing, 0 where free
-    std::vector<double> patch_caps_;  ///< per patch, of the last refinement
+    Caps caps_{mesh_};
     TraceRule trace_rule_;
     double balance_ = 1.0;  ///< see SpacingRule
     CoarseMesh placed_;     ///< what `finish` has made, but for open faces ...
@@ -170,7 +172,7 @@ private:
 
 SpacingRule Remesher::rule_of(double error) const {
     SpacingRule rule;
-    rule.error = error;
+    rule.error = caps_.given(error);
     rule.isotropy = options_.isotropy;
     rule.transfer = options_.transfer;
     rule.balance = balance_;
@@ -189,12 +191,13 @@ ArrangementRule Remesher::arrangement_rule(double error) const {
 double Remesher::start_error(double wanted) {
     if (wanted == 0.0) return 1.4 * wanted_error();
     constexpr double share = 0.68;  // of vertices expected where lines are as far apart as they may: gaps are narrower
+    caps_.expect(wanted);
     double error = 4e-3 * mesh_.diagonal;
     for (int round = 0; round < 4; ++round)
-        error *= std::clamp(
-            expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_)) / (share * wanted), 0.05,
-            20.0);
-    return error;
+        error *= std::clamp(expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_.at(error))) /
+                                (share * wanted),
+                            0.05, 20.0);
+    return caps_.given(error);
 }
 
 bool Remesher::prepare() {
@@ -231,40 +234,19 @@ bool Remesher::prepare() {
     return !control_.cancelled();
 }
 
-/// Lines closer together where faces are no polygons: all over a patch, or around nodes.
-void Remesher::refine(const Flaws& flaws, const Draft& draft, const Spacing& spacing) {
-    caps_.resize(mesh_.wedge_count(), 0.0);
-    patch_caps_.resize(mesh_.patch_count, 0.0);
-    std::vector<bool> flawed(mesh_.patch_count, false);
-    std::vector<std::array<Point3, 2>> boxes(mesh_.patch_count,
-                                             {Point3{1e300, 1e300, 1e300}, Point3{-1e300, -1e300, -1e300}});
-    for (const Index p : flaws.patches) flawed[p] = true;
-    for (Index f = 0; f < mesh_.face_count(); ++f) {
-        if (!flawed[mesh_.patches[f]]) continue;
-        auto& [low, high] = boxes[mesh_.patches[f]];
-        for (const Index v : mesh_.faces[f]) {
-            const Point3& p = mesh_.points[v];
-            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
-            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
-        }
-    }
-    for (const Index p : flaws.patches)
-        patch_caps_[p] = patch_caps_[p] == 0.0 ? 0.4 * distance(boxes[p][0], boxes[p][1]) : 0.6 * patch_caps_[p];
-    const auto lower = [&](Index w, double cap) {
-        if (caps_[w] == 0.0 || cap < caps_[w]) caps_[w] = cap;
-    };
-    for (Index w = 0; w < mesh_.wedge_count(); ++w) {
-        const Index p = mesh_.patches[mesh_.wedge_first[w] / 3];
-        if (flawed[p]) lower(w, patch_caps_[p]);
-    }
-    for (const Index flawed_face : flaws.faces)
-        for (const Index h : draft.faces[flawed_face]) {
-            const Index f = draft.graph.nodes[draft.graph.tail(h)].place.face;
-            for (Index c = 3 * f; c < 3 * f + 3; ++c) {
-                const Index w = mesh_.wedges[c];
-                lower(w, 0.6 * std::min(spacing.at[0][w], spacing.at[1][w]));
-            }
-        }
+/// Faces whose polygons turn away or meet others: too coarse for what the surface does there.
+std::vector<Index> Remesher::broken_faces(const Draft& draft) {
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    CoarseMesh polygons = cut(draft.polygons);
+    std::vector<Index> faces;
+    std::vector<Index> broken = judge_input(polygons, judge).polygons;
+    if (draft.open.empty() && !(mesh_.minor_edges.empty() && mesh_.minor_corners.empty()))
+        add_missed_creases(mesh_, judge, polygons, reach_of(mesh_, judge, polygons), broken);
+    for (const Index q : broken)
+        if (polygons.parent(q) != no_index) faces.push_back(polygons.parent(q));
+    std::sort(faces.begin(), faces.end());
+    faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+    return faces;
 }
 
 /// Faces that will not be polygons but triangles of the input: in flat patches, which no line crosses, what is no disk;
@@ -310,14 +292,20 @@ void Remesher::add_samples(Draft& d, const Spacing& spacing) const {
 }
 
 Draft Remesher::draft(double error) {
-    constexpr int patience = 4, most_rounds = 14;
+    constexpr int patience = 4, most_rounds = 14, most_broken_rounds = 3;
+    int broken_rounds = 0;
+    std::optional<Draft> before;  // the last one without flaws, and its broken faces
+    std::size_t were_broken = 0;
+    caps_.loosen(error);
     for (int round = 0;; ++round) {
-        const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
+        const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_.at(error));
         watch_.stage("spacing");
-        Draft d{error, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {}, 0, {}};
+        const double given = caps_.given(error);
+        Draft d{error, given, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {},
+                0,     {}};
         watch_.stage("lines");
         ++result_.statistics.rounds;
-        d.graph = build_graph(d.network, arrangement_rule(error));
+        d.graph = build_graph(d.network, arrangement_rule(given));
         simplify_graph(d.graph, d.network);
         d.faces = d.graph.trace_faces(mesh_);
         Flaws flaws = find_flaws(d.graph, d.network, d.faces);
@@ -334,6 +322,22 @@ Draft Remesher::draft(double error) {
             }
         }
         watch_.stage("arrangement");
+        if (flaws.empty() && !control_.cancelled()) {
+            std::vector<Index> broken = broken_faces(d);
+            watch_.stage("damage");
+            constexpr double dear = 30.0;  // vertices for a face that is mended no more
+            if (before && (broken.size() >= were_broken ||
+                           count_of(d) > count_of(*before) + dear * static_cast<double>(were_broken))) {
+                caps_.take_back();
+                return std::move(*before);
+            }
+            if (!broken.empty() && broken_rounds++ < most_broken_rounds) {
+                were_broken = broken.size();
+                caps_.refine_broken(broken, d.graph, d.faces, spacing);
+                before.emplace(std::move(d));
+                continue;
+            }
+        }
         if (flaws.empty() || control_.cancelled()) return d;
         if (round == most_rounds) {
             for (Index f = 0; f < mesh_.face_count() && d.flaws.empty(); ++f)
@@ -342,7 +346,7 @@ Draft Remesher::draft(double error) {
             for (const Index f : flaws.faces) d.flaws.push_back(d.graph.nodes[d.graph.tail(d.faces[f][0])].point);
             return d;
         }
-        refine(flaws, d, spacing);
+        caps_.refine(flaws, d.graph, d.faces, spacing);
     }
 }
 
@@ -360,6 +364,8 @@ void Remesher::search(double wanted) {
     int networks = 0;
     /// How far the count is off, as a logarithm; empty: near enough, or cancelled.
     const auto attempt = [&](double error) -> std::optional<double> {
+        // What one error needs so that faces are disks, a larger one does not.
+        caps_.forget_flaws();
         Draft d = draft(error);
         if (control_.cancelled()) return std::nullopt;
         ++networks;
@@ -385,7 +391,7 @@ void Remesher::search(double wanted) {
         if (!off) return;
         (*off > 0.0 ? many : few) = End{std::log(error), *off};
         double step = *off;
-        if (last) step /= std::clamp((last->off - *off) / (std::log(error) - last->knob), 0.5, 1.5);
+        if (last) step /= std::clamp((last->off - *off) / (std::log(error) - last->knob), 0.2, 1.5);
         step = std::clamp(step, -1.2, 1.2);
         last = End{std::log(error), *off};
         if (many && few) {
@@ -406,19 +412,15 @@ void Remesher::search(double wanted) {
     trace_rule_.gap_above = 0.75;
     for (const double balance : {1.02, 0.98, 1.05, 0.95}) {
         balance_ = balance;
-        if (!attempt(best_->error)) return;
+        if (!attempt(best_->knob)) return;
     }
 }
 
 /// Caps the spacing around vertices and triangle centres of either surface that are farther than `limit` from the
 /// other. Returns the share of the input's vertices that are.
 double Remesher::refine_where_far(double error, double limit) {
-    const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_);
-    caps_.resize(mesh_.wedge_count(), 0.0);
-    const auto lower = [&](Index w) {
-        const double cap = 0.45 * std::min(spacing.at[0][w], spacing.at[1][w]);
-        if (caps_[w] == 0.0 || cap < caps_[w]) caps_[w] = cap;
-    };
+    const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_.at(error));
+    const auto lower = [&](Index w) { caps_.lower(w, 0.45 * std::min(spacing.at[0][w], spacing.at[1][w])); };
     const core::TriangleTree& input = *tree_;
     const CoarseMesh triangles = make_triangles(filled_, input);
     std::vector<Triangle> ids;
@@ -651,11 +653,15 @@ bool Remesher::finish() {
 }
 
 /// Whether contacts matter is known only when there are some: the input is asked then.
-void Remesher::judge_input(CoarseMesh& mesh, Judge& judge) {
+Damage Remesher::judge_input(CoarseMesh& mesh, Judge& judge) {
     const bool is_cut_open = result_.statistics.non_manifold_edges + result_.statistics.split_vertices > 0;
     if (is_cut_open) is_embedded_ = false;
-    if (!is_embedded_ && find_damage(judge, mesh, control_).contacts > 0) is_embedded_ = !has_contact(input_, control_);
     judge.is_embedded = is_embedded_.value_or(true);
+    Damage damage = find_damage(judge, mesh, control_);
+    if (is_embedded_ || damage.contacts == 0) return damage;
+    is_embedded_ = !has_contact(input_, control_);
+    judge.is_embedded = *is_embedded_;
+    return *is_embedded_ ? damage : find_damage(judge, mesh, control_);
 }
 
 MendingRule Remesher::mending_rule(double error) const {
@@ -723,19 +729,21 @@ void Remesher::finish_count() {
     std::optional<Attempt> kept;
     double least = 1e300, network = 0.0, aim = std::log(wanted);
     std::optional<std::array<double, 2>> few,
-        many;  // logarithms: what the network was to have, how far off it came out
+        many;  // logarithms: what the network had, how far off it came out
     // What mending adds, the network has to do without.
-    for (int round = 0; round < 4; ++round) {
+    for (int round = 0; round < 6; ++round) {
         CoarseMesh mesh = mended(placed_, 0.0);
         if (control_.cancelled()) return;
         const double count = final_count(mesh), off = std::log(count / wanted);
-        const bool is_mended = std::abs(count - count_of(*best_)) > 0.01 * wanted;
+        const double drafted = count_of(*best_);
+        const bool is_mended = std::abs(count - drafted) > 0.01 * wanted;
         if (std::abs(off) < least) {
             least = std::abs(off);
-            network = count_of(*best_);
+            network = drafted;
             kept.emplace(Attempt{std::move(*best_), std::move(mesh), result_.statistics});
         }
         if (least < 0.045 || !is_mended || options_.subdivide > 0) break;
+        aim = std::log(drafted);
         (off > 0.0 ? many : few) = {aim, off};
         aim -= std::clamp(off, -1.0, 1.0);
         if (many && few) {
@@ -812,7 +820,19 @@ RemeshResult Remesher::run() {
 
 RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options, const RunControl& control) {
     remeshing::check_options(options);
-    return remeshing::Remesher(mesh, options, control).run();
+    RemeshResult result = remeshing::Remesher(mesh, options, control).run();
+    const double wanted = static_cast<double>(options.vertices ? *options.vertices : options.faces.value_or(0));
+    const auto miss = [&](const RemeshResult& r) {
+        return std::abs(
+            std::log(static_cast<double>(options.vertices ? r.statistics.vertices : r.statistics.faces) / wanted));
+    };
+    if (wanted <= static_cast<double>(mesh.positions.size()) || options.subdivide > 0 ||
+        result.outcome != Outcome::done || miss(result) <= 0.05)
+        return result;
+    // Edges of the input may be too long for lines as close as they would have to be.
+    RemeshResult other = remeshing::Remesher(mesh, options, control, wanted).run();
+    if (other.outcome != Outcome::done) return other;
+    return miss(other) < miss(result) ? std::move(other) : std::move(result);
 }
 
 }  // namespace certa

@@ -459,13 +459,24 @@ void build_wedges(WorkMesh& work) {
     }
 }
 
-WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
+/// Lines are sown at vertices: for `count` of their crossings, edges shorter than lines will be apart.
+double longest_edge(const WorkMesh& work, double count) {
+    const double longest = 0.04 * box_diagonal(work);
+    if (count == 0.0) return longest;
+    double area = 0.0;
+    for (const auto& [a, b, c] : work.faces)
+        area += 0.5 * norm(cross(work.points[b] - work.points[a], work.points[c] - work.points[a]));
+    return std::min(longest, 0.6 * std::sqrt(area / count));
+}
+
+WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics,
+                         double count) {
     check_input(mesh);
     WorkMesh work;
     statistics.input_vertices = mesh.positions.size();
     statistics.input_triangles = mesh.triangles.size();
     take_faces(work, mesh, options, statistics);
-    split_long_edges(work, 0.04 * box_diagonal(work), static_cast<Index>(mesh.positions.size()));
+    split_long_edges(work, longest_edge(work, count), static_cast<Index>(mesh.positions.size()));
     statistics.non_manifold_edges = pair_halfedges(work);
     orient(work, statistics);
     pair_halfedges(work);

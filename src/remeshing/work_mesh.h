@@ -98,10 +98,12 @@ struct WorkMesh {
 /// Per point: the first one with the same coordinates.
 std::vector<Index> merge_points(const std::vector<Point3>& points);
 
-/// Checks, orients and connects the input, finds features and wedges (stage 1).
+/// Checks, orients and connects the input, finds features and wedges (stage 1). `count`: edges are short enough for a
+/// result of so many vertices; 0: as they are, but for very long ones.
 ///
 /// Errors: InputError (see remesh).
-WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics);
+WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics,
+                         double count = 0.0);
 
 /// Halves edges longer than `longest`, and their triangles with them, until none is left. The surface stays as it is.
 void split_long_edges(WorkMesh& mesh, double longest, Index input_vertices);

@@ -271,6 +271,53 @@ TEST(Remesh, ABoxIsSixFaces) {
     EXPECT_EQ(result.statistics.corners, 8U);
 }
 
+/// A pipe of n flat facets around, between circles of radius 1 and 0.7, from z = 0 to z = 3.
+TriangleMesh facetted_pipe(std::uint32_t n) {
+    TriangleMesh mesh;
+    for (const auto& [radius, z] : {std::pair{1.0, 0.0}, {1.0, 3.0}, {0.7, 3.0}, {0.7, 0.0}})
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const double angle = 2.0 * pi * i / n;
+            mesh.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
+        }
+    for (std::uint32_t ring = 0; ring < 4; ++ring)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t next = (ring + 1) % 4, j = (i + 1) % n;
+            const VertexId a{ring * n + i}, b{ring * n + j}, c{next * n + j}, d{next * n + i};
+            mesh.triangles.push_back({a, b, c});
+            mesh.triangles.push_back({a, c, d});
+        }
+    return mesh;
+}
+
+TEST(Remesh, SpendsVerticesWhereNothingIsCurved) {
+    RemeshOptions options;
+    options.vertices = 600;
+    for (const TriangleMesh& input : {generators::make_box(1.0, 2.0, 3.0), facetted_pipe(24)}) {
+        const RemeshResult result = remesh(input, options);
+        expect_closed(result, input.positions.size() == 8 ? 2 : 0);
+        EXPECT_NEAR(static_cast<double>(result.statistics.vertices), 600.0, 30.0);
+        EXPECT_GT(2 * result.statistics.quads, result.statistics.faces);
+        EXPECT_EQ(result.statistics.mended_triangles, 0U);
+    }
+}
+
+/// Thin spikes, which lines at their distance elsewhere cut off: they get closer there, and polygons stay.
+TEST(Remesh, ComesCloserWherePolygonsBreak) {
+    std::size_t mended = 0;
+    for (const auto& [width, vertices] : {std::pair{0.012, 300U}, {0.03, 150U}}) {
+        RemeshOptions options;
+        options.vertices = vertices;
+        const auto height = [&](double x, double y) {
+            return 0.3 * x * x - 0.2 * y * y + 1.5 * std::exp(-(x * x + y * y) / width);
+        };
+        const RemeshResult result = remesh(graph_of(40, height), options);
+        ASSERT_EQ(result.outcome, Outcome::done);
+        EXPECT_NEAR(static_cast<double>(result.statistics.vertices), vertices, 0.05 * vertices);
+        mended += result.statistics.mended_triangles;
+    }
+    EXPECT_LT(mended, 20U);
+}
+
 /// Boundary and tagged edges: sides of polygons lie on them, from end to end.
 TEST(Remesh, CoversBoundaryAndTaggedEdges) {
     const std::uint32_t n = 30;

@@ -1,0 +1,69 @@
+// Distances of creases from sides and vertices of a coarse mesh, at samples.
+//
+// Curves of the input are covered by sides, or nearly so. Creases that are too short to be curves are covered where
+// polygons happen to have sides; how far off is too far is for the caller to say.
+#include "remeshing/missed_creases.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "remeshing/templates.h"
+
+namespace certa::remeshing {
+namespace {
+
+core::TriangleTree tree_of(const CoarseMesh& triangles) {
+    std::vector<Triangle> filled;
+    for (std::size_t q = 0; q < triangles.polygon_count(); ++q) {
+        const auto t = triangles.polygon(q);
+        filled.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+    }
+    return {triangles.points, filled};
+}
+
+}  // namespace
+
+double add_missed_creases(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result, double limit,
+                          std::vector<Index>& polygons) {
+    if (mesh.minor_edges.empty() && mesh.minor_corners.empty() && mesh.curves.empty()) return 0.0;
+    std::vector<Triangle> edges, vertices;
+    const auto id = [](Index v) { return VertexId{v}; };
+    std::vector<Index> polygon_of;
+    for (std::size_t q = 0; q < result.polygon_count(); ++q) {
+        const auto ring = result.polygon(q);
+        polygon_of.insert(polygon_of.end(), ring.size() - 2, static_cast<Index>(q));
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            edges.push_back({id(ring[i]), id(ring[(i + 1) % ring.size()]), id(ring[(i + 1) % ring.size()])});
+            vertices.push_back({id(ring[i]), id(ring[i]), id(ring[i])});
+        }
+    }
+    const core::TriangleTree edge_tree(result.points, edges), vertex_tree(result.points, vertices),
+        surface = tree_of(make_triangles(result, judge.tree));
+    double farthest = 0.0;
+    const auto demand = [&](const core::TriangleTree& tree, const Point3& p) {
+        const double away = std::sqrt(tree.find_nearest(p).squared_distance);
+        farthest = std::max(farthest, away);
+        if (away > limit) polygons.push_back(polygon_of[surface.find_nearest(p).triangle]);
+    };
+    for (const Index v : mesh.minor_corners) demand(vertex_tree, mesh.points[v]);
+    std::vector<Index> creases = mesh.minor_edges;
+    for (Index e = 0; e < mesh.edge_curves.size(); ++e)
+        if (mesh.edge_curves[e] != no_index) creases.push_back(e);
+    double total = 0.0;
+    for (const Index e : creases) total += mesh.lengths[e];
+    for (const Index e : creases) {
+        constexpr double samples = 20000.0;
+        const double steps = 4.0 + std::ceil(samples * mesh.lengths[e] / total);
+        for (double k = 0.0; k <= steps; k += 1.0) demand(edge_tree, mesh.point_on(e, k / steps));
+    }
+    return farthest;
+}
+
+double reach_of(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result) {
+    const core::TriangleTree surface = tree_of(make_triangles(result, judge.tree));
+    double square = 0.0;
+    for (const Point3& p : mesh.points) square = std::max(square, surface.find_nearest(p).squared_distance);
+    return std::sqrt(square);
+}
+
+}  // namespace certa::remeshing
