@@ -89,7 +89,7 @@ public:
         }
         std::sort(sides_.begin(), sides_.end());
         for (const Index f : layout.open) {
-            in_set_[f] = 1;
+            if (!std::binary_search(layout.filled.begin(), layout.filled.end(), f)) in_set_[f] = 1;
             open_in_patch_[patch_beside(layout.graph, layout.network, layout.faces[f].front())].push_back(f);
         }
     }
@@ -175,9 +175,17 @@ private:
             for (Region& region : regions_) {
                 if (find_patch(region) != nullptr) continue;
                 again = true;
-                for (const Index f : patcher_.grow(region.faces)) in_set_[f] = 1;
+                for (const Index f : patcher_.grow(region.faces)) take_in(f);
             }
         }
+    }
+
+    /// Into the set; all rims of a flat face at once.
+    void take_in(Index f) {
+        in_set_[f] = 1;
+        if (!std::binary_search(layout_.filled.begin(), layout_.filled.end(), f)) return;
+        for (const Index g : open_in_patch_.at(patch_beside(layout_.graph, layout_.network, layout_.faces[f].front())))
+            in_set_[g] = 1;
     }
 
     std::vector<Point3> points_of(const RegionPatch& patch) const {
@@ -380,7 +388,7 @@ private:
             report.left.push_back(result_.points[result_.polygon(q)[0]]);
             if (f == no_index) continue;
             if (in_set_[f] == 0) {
-                in_set_[f] = 1;
+                take_in(f);
                 has_changed = true;
             } else if (region_of_[f] != no_index) {  // not one that has just joined
                 broken_patches[region_of_[f]].push_back(q);
@@ -398,7 +406,7 @@ private:
                 is_stuck = is_stuck || tries > most_tries;
             }
             patches_.erase(region.faces);
-            for (const Index g : faces_around(region, near_border, is_stuck)) in_set_[g] = 1;
+            for (const Index g : faces_around(region, near_border, is_stuck)) take_in(g);
         }
         return has_changed;
     }
@@ -504,7 +512,7 @@ MendingReport mend(const Layout& layout, const Judge& judge, const MendingRule& 
 
 void fill_open_faces(const Layout& layout, const Judge& judge, const MendingRule& rule, CoarseMesh& mesh,
                      const RunControl& control) {
-    if (!layout.open.empty()) Mender(layout, judge, rule, mesh, control).fill();
+    if (layout.open.size() != layout.filled.size()) Mender(layout, judge, rule, mesh, control).fill();
 }
 
 CoarseMesh thin_input(const WorkMesh& mesh, const Judge& judge, double tolerance, std::size_t vertices,

@@ -1,6 +1,7 @@
 #pragma once
 // The input itself in place of faces of the graph: what is left to do where no polygon will.
 #include <optional>
+#include <span>
 
 #include "remeshing/merge_ends.h"
 #include "remeshing/polygons.h"
@@ -15,6 +16,7 @@ struct Layout {
     const std::vector<Index>& nodes;          ///< of the graph, per vertex of the polygons; vertices beyond have none
     const std::vector<MergedVertex>& merged;  ///< vertices whose nodes belong to others
     const std::vector<Index>& open;           ///< faces that are no disks or meet themselves, sorted: never polygons
+    std::span<const Index> filled{};          ///< those of them that have triangles already, sorted, all of a patch
 };
 
 struct RegionVertex {

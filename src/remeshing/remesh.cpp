@@ -18,6 +18,7 @@
 #include "remeshing/cancel_umbilics.h"
 #include "remeshing/caps.h"
 #include "remeshing/crowded.h"
+#include "remeshing/flat_faces.h"
 #include "remeshing/guides.h"
 #include "remeshing/isotropic.h"
 #include "remeshing/mend.h"
@@ -76,17 +77,18 @@ void check_options(const RemeshOptions& options) {
 struct Draft {
     double knob = 0.0, error = 0.0;  ///< the error asked of lines, and the one that they were given
     Network network;
-    Graph graph;
-    std::vector<std::vector<Index>> faces;
-    std::vector<Index> nodes;  ///< of the graph, per vertex of the polygons
-    std::vector<MergedVertex> merged;
-    std::vector<Index> open;  ///< faces that are no polygons, but have the input's triangles
-    CoarseMesh polygons;
-    PolygonCounts counts;
-    std::size_t samples = 0;    ///< that polygons are triangulated around
-    std::vector<Point3> flaws;  ///< places that no refinement has mended
+    Graph graph{};
+    std::vector<std::vector<Index>> faces{};
+    std::vector<Index> nodes{};  ///< of the graph, per vertex of the polygons
+    std::vector<MergedVertex> merged{};
+    std::vector<Index> open{};    ///< faces that are no polygons, but have the input's triangles ...
+    std::vector<Index> filled{};  ///< ... or, where they are flat, triangles between their rims
+    CoarseMesh polygons{};
+    PolygonCounts counts{};
+    std::size_t samples = 0;      ///< that polygons are triangulated around
+    std::vector<Point3> flaws{};  ///< places that no refinement has mended
 
-    Layout layout() const { return {network, graph, faces, nodes, merged, open}; }
+    Layout layout() const { return {network, graph, faces, nodes, merged, open, filled}; }
 };
 
 class Remesher {
@@ -240,10 +242,12 @@ std::vector<Index> Remesher::broken_faces(const Draft& draft) {
     CoarseMesh polygons = cut(draft.polygons);
     std::vector<Index> faces;
     std::vector<Index> broken = judge_input(polygons, judge).polygons;
-    if (draft.open.empty() && !(mesh_.minor_edges.empty() && mesh_.minor_corners.empty()))
+    if (draft.open.size() == draft.filled.size() && !(mesh_.minor_edges.empty() && mesh_.minor_corners.empty()))
         add_missed_creases(mesh_, judge, polygons, reach_of(mesh_, judge, polygons), broken);
     for (const Index q : broken)
-        if (polygons.parent(q) != no_index) faces.push_back(polygons.parent(q));
+        if (const Index f = polygons.parent(q);
+            f != no_index && !std::binary_search(draft.open.begin(), draft.open.end(), f))
+            faces.push_back(polygons.parent(q));
     std::sort(faces.begin(), faces.end());
     faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
     return faces;
@@ -301,8 +305,7 @@ Draft Remesher::draft(double error) {
         const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_.at(error));
         watch_.stage("spacing");
         const double given = caps_.given(error);
-        Draft d{error, given, trace_lines(mesh_, field_, spacing, trace_rule_, control_), {}, {}, {}, {}, {}, {}, {},
-                0,     {}};
+        Draft d{error, given, trace_lines(mesh_, field_, spacing, trace_rule_, control_)};
         watch_.stage("lines");
         ++result_.statistics.rounds;
         d.graph = build_graph(d.network, arrangement_rule(given));
@@ -313,6 +316,8 @@ Draft Remesher::draft(double error) {
         if (flaws.empty()) {
             d.polygons = make_polygons(d.graph, d.faces, d.open, d.counts, d.nodes);
             merge_ends(d, spacing);
+            d.filled =
+                fill_flat_faces(d.network, d.graph, d.faces, d.open, d.nodes, d.merged, 0.02 * given, d.polygons);
             add_samples(d, spacing);
             // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
             for (int fans = 0; fans < 3; ++fans) {

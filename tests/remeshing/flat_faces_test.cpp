@@ -1,0 +1,88 @@
+// Flat faces with holes: triangles between the vertices that are there, and what they do for a count.
+#include "remeshing/flat_faces.h"
+
+#include <certa/remeshing.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/vector3.h"
+
+namespace certa::remeshing {
+namespace {
+
+constexpr double pi = std::numbers::pi;
+
+/// Points on a circle in the plane that `u` and `v` span; the cycle runs around u x v, or the other way.
+std::vector<Index> add_circle(std::vector<Point3>& points, const Point3& u, const Point3& v, const Point3& center,
+                              double radius, Index n, bool around) {
+    std::vector<Index> rim;
+    for (Index i = 0; i < n; ++i) {
+        const double angle = (around ? 2.0 : -2.0) * pi * i / n;
+        rim.push_back(static_cast<Index>(points.size()));
+        points.push_back(center + radius * std::cos(angle) * u + radius * std::sin(angle) * v);
+    }
+    return rim;
+}
+
+TEST(FlatFaces, HolesCostTwoTrianglesEach) {
+    for (const double tilt : {0.0, 0.7, 2.0, 3.1, 4.0, 5.5}) {
+        const Point3 u{std::cos(tilt), 0.3, std::sin(tilt)}, side{-std::sin(tilt), 0.2, std::cos(tilt)};
+        const Point3 x = (1.0 / norm(u)) * u, normal = (1.0 / norm(cross(x, side))) * cross(x, side),
+                     y = cross(normal, x);
+        std::vector<Point3> points;
+        std::vector<std::vector<Index>> rims{add_circle(points, x, y, {}, 3.0, 40, true)};
+        rims.push_back(add_circle(points, x, y, 1.2 * x + 0.3 * y, 0.8, 11, false));
+        rims.push_back(add_circle(points, x, y, -1.1 * x + 0.3 * y, 1.1, 7, false));
+        rims.push_back(add_circle(points, x, y, -1.1 * x + 0.3 * y, 0.5, 6, true));  // an island in the hole
+        const auto triangles = triangulate_between(points, rims, normal);
+        ASSERT_TRUE(triangles.has_value());
+        EXPECT_EQ(triangles->size(), 40U + 11U + 7U + 2U * 2U - 2U + 6U - 2U);
+        double sum = 0.0;
+        for (const auto& [a, b, c] : *triangles) {
+            const double area = 0.5 * dot(cross(points[b] - points[a], points[c] - points[a]), normal);
+            EXPECT_GT(area, 0.0);
+            sum += area;
+        }
+        const auto polygon = [](double n, double radius) { return 0.5 * n * radius * radius * std::sin(2.0 * pi / n); };
+        EXPECT_NEAR(sum, polygon(40, 3.0) - polygon(11, 0.8) - polygon(7, 1.1) + polygon(6, 0.5), 1e-9);
+    }
+}
+
+TEST(FlatFaces, RefusesRimsThatCross) {
+    std::vector<Point3> points;
+    const Point3 x{1, 0, 0}, y{0, 1, 0};
+    std::vector<std::vector<Index>> rims{add_circle(points, x, y, {}, 1.0, 12, true)};
+    rims.push_back(add_circle(points, x, y, {0.8, 0.0, 0.0}, 0.5, 9, false));
+    EXPECT_FALSE(triangulate_between(points, rims, {0, 0, 1}).has_value());
+    rims.pop_back();
+    rims.push_back({rims[0][2], rims[0][1], rims[0][0]});  // a vertex on two rims
+    EXPECT_FALSE(triangulate_between(points, rims, {0, 0, 1}).has_value());
+}
+
+/// A pipe of flat facets: its ends are flat rings, whose rims have all the vertices that they need.
+TEST(FlatFaces, RingsAreNotMended) {
+    constexpr std::uint32_t n = 16;
+    TriangleMesh pipe;
+    for (const auto& [radius, z] : {std::pair{1.0, 0.0}, {1.0, 3.0}, {0.7, 3.0}, {0.7, 0.0}})
+        for (std::uint32_t i = 0; i < n; ++i)
+            pipe.positions.push_back({radius * std::cos(2.0 * pi * i / n), radius * std::sin(2.0 * pi * i / n), z});
+    for (std::uint32_t ring = 0; ring < 4; ++ring)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t next = (ring + 1) % 4, j = (i + 1) % n;
+            const VertexId a{ring * n + i}, b{ring * n + j}, c{next * n + j}, d{next * n + i};
+            pipe.triangles.push_back({a, b, c});
+            pipe.triangles.push_back({a, c, d});
+        }
+    RemeshOptions options;
+    options.vertices = 400;
+    const RemeshResult result = remesh(pipe, options);
+    ASSERT_EQ(result.outcome, Outcome::done);
+    EXPECT_NEAR(static_cast<double>(result.statistics.vertices), 400.0, 20.0);
+    EXPECT_EQ(result.statistics.mended_triangles, 0U);
+    EXPECT_GT(3 * result.statistics.quads, 2 * result.statistics.faces);
+}
+
+}  // namespace
+}  // namespace certa::remeshing
