@@ -45,6 +45,36 @@ NearestPoint nearest_on_sides(const Point3& p, const Point3& a, const Point3& b,
     });
 }
 
+/// What is left of p across the direction of e.
+Point3 across(const Point3& p, const Point3& e) {
+    const double square = dot(e, e);
+    const Point3 once = p - (dot(p, e) / square) * e;
+    return once - (dot(once, e) / square) * e;
+}
+
+/// In the frame of the longest side and the height over it: errors are those of lengths, however low the triangle is.
+NearestPoint nearest_on_sliver(const Point3& p, const Point3& a, const Point3& b, const Point3& c) {
+    const NearestPoint on_sides = nearest_on_sides(p, a, b, c);
+    const std::array<Point3, 3> corners{a, b, c};
+    std::size_t first = 0;
+    double longest = 0.0;
+    for (std::size_t i = 0; i < 3; ++i) {
+        const Point3 side = corners[(i + 1) % 3] - corners[i];
+        if (dot(side, side) > longest) longest = dot(side, side), first = i;
+    }
+    const Point3 &origin = corners[first], side = corners[(first + 1) % 3] - origin,
+                 other = corners[(first + 2) % 3] - origin;
+    const Point3 height = across(other, side);
+    if (!(dot(height, height) > 0.0)) return on_sides;
+    const double top = dot(across(p - origin, side), height) / dot(height, height);
+    const double end = (dot(p - origin, side) - top * dot(other, side)) / longest;
+    if (!(top > 0.0 && end > 0.0 && top + end < 1.0)) return on_sides;
+    std::array<double, 3> weights{};
+    weights[first] = 1.0 - top - end, weights[(first + 1) % 3] = end, weights[(first + 2) % 3] = top;
+    const NearestPoint inside = on_weights(p, a, b, c, weights);
+    return inside.squared_distance < on_sides.squared_distance ? inside : on_sides;
+}
+
 Point3 lowest(const Point3& p, const Point3& q) { return {std::min(p.x, q.x), std::min(p.y, q.y), std::min(p.z, q.z)}; }
 Point3 highest(const Point3& p, const Point3& q) {
     return {std::max(p.x, q.x), std::max(p.y, q.y), std::max(p.z, q.z)};
@@ -54,9 +84,10 @@ Point3 highest(const Point3& p, const Point3& q) {
 
 NearestPoint find_nearest_on_triangle(const Point3& p, const Point3& a, const Point3& b, const Point3& c) {
     const Point3 ab = b - a, ac = c - a, ap = p - a;
-    // In a sliver the signs below say little; a needle's sides are as near as its inside, up to its width.
+    // In a sliver the signs below say little.
     const Point3 n = cross(ab, ac);
-    if (!(dot(n, n) > 1e-20 * dot(ab, ab) * dot(ac, ac))) return nearest_on_sides(p, a, b, c);
+    const double longest = std::max(dot(ab, ab), dot(ac, ac));
+    if (!(dot(n, n) > 1e-4 * longest * longest)) return nearest_on_sliver(p, a, b, c);
     const double d1 = dot(ab, ap), d2 = dot(ac, ap);
     if (d1 <= 0.0 && d2 <= 0.0) return on_weights(p, a, b, c, {1.0, 0.0, 0.0});
     const Point3 bp = p - b;

@@ -52,6 +52,24 @@ TEST(NearestOnTriangle, AgreesWithSamplingAlsoForSlivers) {
     }
 }
 
+/// Points on a needle, and above it, are as far away as they are, to nearly the last digit.
+TEST(NearestOnTriangle, IsExactOnNeedles) {
+    Random random(11);
+    for (int round = 0; round < 400; ++round) {
+        const double height = std::pow(10.0, -3.0 - round % 10);
+        const Point3 a = random_point(random), along = random_point(random);
+        const Point3 normal = (1.0 / norm(cross(along, {0.3, -0.5, 0.8}))) * cross(along, {0.3, -0.5, 0.8});
+        const Point3 b = a + along, c = a + (round % 3 == 0 ? 10.0 * height : 0.4) * along + height * normal;
+        const double u = random.uniform(), v = random.uniform() * (1.0 - u);
+        const Point3 p = (1.0 - u - v) * a + u * b + v * c;
+        EXPECT_LE(std::sqrt(find_nearest_on_triangle(p, a, b, c).squared_distance), 1e-12);
+        EXPECT_LE(std::sqrt(find_nearest_on_triangle(p, b, c, a).squared_distance), 1e-12);
+        EXPECT_LE(std::sqrt(find_nearest_on_triangle(p, c, a, b).squared_distance), 1e-12);
+        const Point3 up = (1e-3 / norm(along)) * cross(along, normal);
+        EXPECT_NEAR(std::sqrt(find_nearest_on_triangle(p + up, a, b, c).squared_distance), 1e-3, 1e-12);
+    }
+}
+
 TEST(TriangleTree, FindsTheNearestOfAll) {
     Random random(3);
     std::vector<Point3> positions;
