@@ -8,10 +8,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.h"
 #include "core/vector3.h"
 #include "exact/orientation.h"
+#include "remeshing/stitch.h"
 #include "remeshing/triangulate.h"
 
 namespace certa::remeshing {
@@ -170,10 +172,15 @@ private:
         };
         std::vector<Entry> entries;
         std::vector<Triangle> triangles;
+        std::vector<Index> names(mesh_.points.size());
+        if (judge_.is_cut_open)
+            names = stitched_vertices(mesh_);
+        else
+            std::iota(names.begin(), names.end(), 0U);
         for (Index q = 0; q < fillings_.size(); ++q)
             for (Index k = 0; k < fillings_[q].size(); ++k)
                 for (const Triple& t : fillings_[q][k].triangles) {
-                    entries.push_back({t, q, k});
+                    entries.push_back({{names[t[0]], names[t[1]], names[t[2]]}, q, k});
                     triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
                 }
         const core::TriangleTree tree(mesh_.points, triangles);
@@ -260,6 +267,7 @@ bool do_meet(std::span<const Point3> points, const Triple& s, const Triple& t) {
 }
 
 bool Judge::is_turned_away(const Point3& a, const Point3& b, const Point3& c) const {
+    constexpr double least_cosine = 1e-4;  // needles beside a right angle: others may round to the other side
     const Point3 normal = cross(b - a, c - a);
     const double longest = std::max({dot(b - a, b - a), dot(c - b, c - b), dot(a - c, a - c)});
     if (norm(normal) <= 1e-9 * longest) return false;  // a needle has no side
@@ -274,7 +282,8 @@ bool Judge::is_turned_away(const Point3& a, const Point3& b, const Point3& c) co
         const Point3 &p = input.positions[index_of(c3[0])], &q = input.positions[index_of(c3[1])],
                      &r = input.positions[index_of(c3[2])];
         if (core::find_nearest_on_triangle(x, p, q, r).squared_distance > reach * reach) return;
-        if (dot(cross(q - p, r - p), normal) > 0.0) is_away = false;
+        const Point3 below = cross(q - p, r - p);
+        if (dot(below, normal) > least_cosine * norm(below) * norm(normal)) is_away = false;
     });
     return is_away;
 }
@@ -283,7 +292,7 @@ Damage find_damage(const Judge& judge, CoarseMesh& mesh, const RunControl& contr
     return Finder(judge, mesh, control).run();
 }
 
-bool has_contact(const TriangleMesh& mesh, const RunControl& control) {
+bool has_contact(const TriangleMesh& mesh, std::span<const Index> names, const RunControl& control) {
     const core::TriangleTree tree(mesh.positions, mesh.triangles);
     std::vector<std::uint8_t> met(mesh.triangles.size(), 0);
     core::parallel_for(mesh.triangles.size(), 256, control, [&](std::size_t begin, std::size_t end) {
@@ -297,11 +306,10 @@ bool has_contact(const TriangleMesh& mesh, const RunControl& control) {
                 if (j <= i) return;
                 const Triangle& t = mesh.triangles[j];
                 const Triple b{index_of(t[0]), index_of(t[1]), index_of(t[2])};
-                // Copies of one point are one corner.
                 Triple named = b;
                 for (Index& v : named)
                     for (const Index u : a)
-                        if (mesh.positions[u] == mesh.positions[v]) v = u;
+                        if (names[u] == names[v]) v = u;
                 if (do_meet(mesh.positions, a, named)) met[i] = 1;
             });
         }

@@ -21,7 +21,8 @@ struct Judge {
     const TriangleMesh& input;
     const core::TriangleTree& tree;
     double diagonal = 0.0;
-    bool is_embedded = true;  ///< contacts are forbidden: the input has none
+    bool is_embedded = true;   ///< contacts are forbidden: the input has none
+    bool is_cut_open = false;  ///< vertices in one place will be one (stitch)
     /// Whether a triangle turns away by 90 degrees or more from all that is nearest to its middle.
     bool is_turned_away(const Point3& a, const Point3& b, const Point3& c) const;
 };
@@ -34,7 +35,7 @@ struct Damage {
 /// Splits quads of which only one diagonal will do, and lists what remains broken.
 Damage find_damage(const Judge& judge, CoarseMesh& mesh, const RunControl& control);
 
-/// Pairs of triangles of the input that meet, at most one is looked for: whether there is any.
-bool has_contact(const TriangleMesh& mesh, const RunControl& control);
+/// Whether any two triangles meet beyond what they share. `names`: per point; copies of one have the same.
+bool has_contact(const TriangleMesh& mesh, std::span<const Index> names, const RunControl& control);
 
 }  // namespace certa::remeshing

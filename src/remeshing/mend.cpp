@@ -35,34 +35,15 @@ std::vector<std::uint8_t> fixed_vertices(const WorkMesh& mesh) {
     return is_fixed;
 }
 
-/// Leaves out vertices without polygons, and feature edges that are no sides.
-void tidy(CoarseMesh& mesh) {
-    std::vector<std::array<Index, 2>> sides;
-    std::vector<Index> numbers(mesh.points.size(), no_index);
-    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
-        const auto ring = mesh.polygon(q);
-        for (std::size_t i = 0; i < ring.size(); ++i) {
-            const Index a = ring[i], b = ring[(i + 1) % ring.size()];
-            sides.push_back({std::min(a, b), std::max(a, b)});
-            numbers[a] = 0;
-        }
-    }
-    std::sort(sides.begin(), sides.end());
-    std::erase_if(mesh.feature_edges, [&](const FeatureEdge& e) {
-        return !std::binary_search(sides.begin(), sides.end(), std::array{std::min(e.a, e.b), std::max(e.a, e.b)});
-    });
-    Index count = 0;
-    for (Index v = 0; v < numbers.size(); ++v) {
-        if (numbers[v] == no_index) continue;
-        numbers[v] = count;
-        mesh.points[count] = mesh.points[v];
-        mesh.kinds[count] = mesh.kinds[v];
-        mesh.curves[count] = mesh.curves[v];
-        mesh.places[count++] = mesh.places[v];
-    }
-    mesh.points.resize(count), mesh.kinds.resize(count), mesh.curves.resize(count), mesh.places.resize(count);
-    for (Index& v : mesh.corners) v = numbers[v];
-    for (FeatureEdge& e : mesh.feature_edges) e.a = numbers[e.a], e.b = numbers[e.b];
+/// Vertices that other sheets have copies of: where whole sheets are thinned out, each by itself, they stay.
+std::vector<std::uint8_t> copied_vertices(const WorkMesh& mesh) {
+    std::map<Index, Index> copies;
+    if (mesh.is_cut_open)
+        for (const Index source : mesh.point_sources) ++copies[source];
+    std::vector<std::uint8_t> is_copied(mesh.points.size(), 0);
+    for (Index v = 0; v < mesh.points.size() && mesh.is_cut_open; ++v)
+        is_copied[v] = copies[mesh.point_sources[v]] > 1 ? 1 : 0;
+    return is_copied;
 }
 
 class Mender {
@@ -77,6 +58,7 @@ public:
           base_(join(mesh)),
           out_(mesh),
           is_fixed_(fixed_vertices(mesh_)),
+          is_copied_(copied_vertices(mesh_)),
           patcher_(layout) {
         in_set_.assign(patcher_.face_count(), 0);
         is_cut_.assign(patcher_.face_count(), 0);
@@ -110,7 +92,7 @@ public:
         report.regions = regions_.size();
         for (const Region& region : regions_) report.faces += region.faces.size(), report.triangles += region.triangles;
         for (std::size_t f = 0; f < in_set_.size(); ++f) report.cut_faces += in_set_[f] == 0 ? is_cut_[f] : 0;
-        tidy(result_);
+        leave_out_unused(result_);
         out_ = std::move(result_);
         return report;
     }
@@ -218,6 +200,7 @@ private:
             const RegionVertex& v = patch.inner[i];
             const bool is_fixed =
                 v.kind == VertexKind::corner || v.on_minor_edge || (v.source != no_index && is_fixed_[v.source] != 0) ||
+                (patch.sides.empty() && v.source != no_index && is_copied_[v.source] != 0) ||
                 std::any_of(kept_.begin(), kept_.end(), [&](const Ball& b) { return b.holds(v.point); });
             rule.is_fixed[patch.outer.size() + i] = is_fixed ? 1 : 0;
         }
@@ -489,7 +472,7 @@ private:
     const RunControl& control_;
     const CoarseMesh base_;
     CoarseMesh& out_;
-    const std::vector<std::uint8_t> is_fixed_;
+    const std::vector<std::uint8_t> is_fixed_, is_copied_;
     RegionPatcher patcher_;
 
     std::vector<std::uint8_t> in_set_;  ///< per face of the graph: the input takes its place
@@ -505,6 +488,35 @@ private:
 
 }  // namespace
 
+void leave_out_unused(CoarseMesh& mesh) {
+    std::vector<std::array<Index, 2>> sides;
+    std::vector<Index> numbers(mesh.points.size(), no_index);
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+        const auto ring = mesh.polygon(q);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+            sides.push_back({std::min(a, b), std::max(a, b)});
+            numbers[a] = 0;
+        }
+    }
+    std::sort(sides.begin(), sides.end());
+    std::erase_if(mesh.feature_edges, [&](const FeatureEdge& e) {
+        return !std::binary_search(sides.begin(), sides.end(), std::array{std::min(e.a, e.b), std::max(e.a, e.b)});
+    });
+    Index count = 0;
+    for (Index v = 0; v < numbers.size(); ++v) {
+        if (numbers[v] == no_index) continue;
+        numbers[v] = count;
+        mesh.points[count] = mesh.points[v];
+        mesh.kinds[count] = mesh.kinds[v];
+        mesh.curves[count] = mesh.curves[v];
+        mesh.places[count++] = mesh.places[v];
+    }
+    mesh.points.resize(count), mesh.kinds.resize(count), mesh.curves.resize(count), mesh.places.resize(count);
+    for (Index& v : mesh.corners) v = numbers[v];
+    for (FeatureEdge& e : mesh.feature_edges) e.a = numbers[e.a], e.b = numbers[e.b];
+}
+
 MendingReport mend(const Layout& layout, const Judge& judge, const MendingRule& rule, CoarseMesh& mesh,
                    const RunControl& control) {
     return Mender(layout, judge, rule, mesh, control).run();
@@ -515,22 +527,36 @@ void fill_open_faces(const Layout& layout, const Judge& judge, const MendingRule
     if (layout.open.size() != layout.filled.size()) Mender(layout, judge, rule, mesh, control).fill();
 }
 
-CoarseMesh thin_input(const WorkMesh& mesh, const Judge& judge, double tolerance, std::size_t vertices,
-                      const RunControl& control) {
-    RegionPatch patch = take_all(mesh);
+namespace {
+
+CoarseMesh thin(RegionPatch patch, const WorkMesh& mesh, const Judge& judge, double tolerance, std::size_t vertices,
+                const RunControl& control) {
     std::vector<Point3> points;
     for (const RegionVertex& v : patch.inner) points.push_back(v.point);
     ThinningRule rule;
     rule.tolerance = tolerance;
     rule.least_vertices = vertices;
-    const std::vector<std::uint8_t> is_fixed = fixed_vertices(mesh);
-    for (const RegionVertex& v : patch.inner) rule.is_fixed.push_back(v.source == no_index ? 0 : is_fixed[v.source]);
-    thin_out(patch, points, judge, rule, control);
+    const std::vector<std::uint8_t> is_fixed = fixed_vertices(mesh), is_copied = copied_vertices(mesh);
+    for (const RegionVertex& v : patch.inner)
+        rule.is_fixed.push_back(v.source == no_index ? 0 : is_fixed[v.source] | is_copied[v.source]);
+    if (tolerance > 0.0) thin_out(patch, points, judge, rule, control);
     CoarseMesh out;
     for (const RegionVertex& v : patch.inner) out.add_vertex(v.point, v.place, v.kind, v.curve);
     for (const auto& t : patch.triangles) out.add_polygon(t);
     out.feature_edges = patch.feature_edges;
     return out;
+}
+
+}  // namespace
+
+CoarseMesh thin_input(const WorkMesh& mesh, const Judge& judge, double tolerance, std::size_t vertices,
+                      const RunControl& control) {
+    return thin(take_all(mesh), mesh, judge, tolerance, vertices, control);
+}
+
+CoarseMesh thin_part(const WorkMesh& mesh, std::span<const Index> triangles, const Judge& judge, double tolerance,
+                     const RunControl& control) {
+    return thin(take_part(mesh, triangles), mesh, judge, tolerance, 0, control);
 }
 
 }  // namespace certa::remeshing

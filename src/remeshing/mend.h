@@ -39,5 +39,11 @@ void fill_open_faces(const Layout& layout, const Judge& judge, const MendingRule
 /// the tolerance allows.
 CoarseMesh thin_input(const WorkMesh& mesh, const Judge& judge, double tolerance, std::size_t vertices,
                       const RunControl& control);
+/// The same for some of its components, all of whose triangles are listed. Tolerance 0: as they are.
+CoarseMesh thin_part(const WorkMesh& mesh, std::span<const Index> triangles, const Judge& judge, double tolerance,
+                     const RunControl& control);
+
+/// Leaves out vertices without polygons, and feature edges that are no sides.
+void leave_out_unused(CoarseMesh& mesh);
 
 }  // namespace certa::remeshing

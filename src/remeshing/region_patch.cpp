@@ -121,11 +121,15 @@ std::optional<RegionPatch> RegionPatcher::make(const std::vector<Index>& faces) 
     return patch;
 }
 
+RegionPatch take_part(const WorkMesh& mesh, std::span<const Index> triangles) {
+    const Network network(mesh);
+    return *cut_surface(network, {}, {}, triangles, {{}, {}, mark_minor(mesh)});
+}
+
 RegionPatch take_all(const WorkMesh& mesh) {
     std::vector<Index> triangles(mesh.face_count());
     for (Index f = 0; f < triangles.size(); ++f) triangles[f] = f;
-    const Network network(mesh);
-    return *cut_surface(network, {}, {}, triangles, {{}, {}, mark_minor(mesh)});
+    return take_part(mesh, triangles);
 }
 
 }  // namespace certa::remeshing

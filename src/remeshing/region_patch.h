@@ -84,5 +84,7 @@ private:
 
 /// All of the work mesh, without a graph.
 RegionPatch take_all(const WorkMesh& mesh);
+/// Whole components of it, by their triangles.
+RegionPatch take_part(const WorkMesh& mesh, std::span<const Index> triangles);
 
 }  // namespace certa::remeshing

@@ -26,6 +26,8 @@
 #include "remeshing/pair_triangles.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
+#include "remeshing/rescue.h"
+#include "remeshing/share_nodes.h"
 #include "remeshing/sound_subdivision.h"
 #include "remeshing/stitch.h"
 #include "remeshing/templates.h"
@@ -310,6 +312,7 @@ Draft Remesher::draft(double error) {
         ++result_.statistics.rounds;
         d.graph = build_graph(d.network, arrangement_rule(given));
         simplify_graph(d.graph, d.network);
+        share_nodes(d.graph, mesh_);
         d.faces = d.graph.trace_faces(mesh_);
         Flaws flaws = find_flaws(d.graph, d.network, d.faces);
         d.open = open_faces(flaws, d, spacing, round >= patience);
@@ -566,7 +569,11 @@ PlacementReport Remesher::place(CoarseMesh& mesh, const PlacementOptions& option
             features.push_back({mesh_.start_of(h), mesh_.end_of(h), mesh_.edge_curves[e]});
     }
     control_.report("placement", 0.9);
+    const std::vector<Point3> before = mesh.points;
     PlacementReport report = place_vertices(input_, features, mesh, options, control_);
+    // To the last bit: copies of a corner find each other by it.
+    for (std::size_t v = 0; v < before.size(); ++v)
+        if (mesh.kinds[v] == VertexKind::corner) mesh.points[v] = before[v];
     watch_.stage("placement");
     return report;
 }
@@ -633,18 +640,20 @@ bool Remesher::finish() {
     CoarseMesh coarse = polygons;
     fill_open_faces(best_->layout(), {input_, *tree_, mesh_.diagonal, true}, mending_rule(0.0), coarse, control_);
     watch_.stage("outputs");
-    if (options_.output == RemeshOutput::polygons && options_.placement) {
+    // Where nearly all is from the input, there is little to place and much to look at.
+    const bool is_mostly_input = coarse.points.size() > 4 * polygons.points.size();
+    const bool places = options_.placement && !is_mostly_input;
+    const bool is_cut_anew = options_.output == RemeshOutput::quad_dominant && wanted_count() > 0.0;
+    if (places && options_.output == RemeshOutput::polygons) {
         // Placed as quads and triangles, which say how the polygons are filled.
         CoarseMesh filled = make_quad_dominant(coarse);
         place(filled);
         coarse.points = filled.points;
         coarse.places = filled.places;
-    } else {
-        if (options_.output == RemeshOutput::quad_dominant && wanted_count() > 0.0 && options_.placement) {
-            place_and_cut(polygons, coarse);
-        } else {
-            place(coarse);
-        }
+    } else if (places && is_cut_anew) {
+        place_and_cut(polygons, coarse);
+    } else if (places) {
+        place(coarse);
     }
     filled_ = std::move(coarse);
     placed_ = polygons;
@@ -652,19 +661,16 @@ bool Remesher::finish() {
         placed_.points[v] = filled_.points[v];
         placed_.places[v] = filled_.places[v];
     }
-    const bool is_cut_anew = wanted_count() > 0.0 && options_.placement;
-    if (options_.output == RemeshOutput::quad_dominant && !is_cut_anew) recuts_ = find_recuts(placed_);
+    if (options_.output == RemeshOutput::quad_dominant && recuts_.empty()) recuts_ = find_recuts(placed_);
     return true;
 }
 
 /// Whether contacts matter is known only when there are some: the input is asked then.
 Damage Remesher::judge_input(CoarseMesh& mesh, Judge& judge) {
-    const bool is_cut_open = result_.statistics.non_manifold_edges + result_.statistics.split_vertices > 0;
-    if (is_cut_open) is_embedded_ = false;
     judge.is_embedded = is_embedded_.value_or(true);
     Damage damage = find_damage(judge, mesh, control_);
     if (is_embedded_ || damage.contacts == 0) return damage;
-    is_embedded_ = !has_contact(input_, control_);
+    is_embedded_ = !has_contact(input_, mesh_.point_sources, control_);
     judge.is_embedded = *is_embedded_;
     return *is_embedded_ ? damage : find_damage(judge, mesh, control_);
 }
@@ -682,7 +688,7 @@ MendingRule Remesher::mending_rule(double error) const {
 }
 
 CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
-    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
     CoarseMesh looked_at = recut(mesh, recuts_);
     judge_input(looked_at, judge);
     const MendingReport report = mend(best_->layout(), judge, mending_rule(error), mesh, control_);
@@ -690,6 +696,7 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
     s.mended_regions = report.regions;
     s.mended_triangles = report.triangles;
     s.cut_faces = report.cut_faces;
+    rescue_components(best_->layout(), judge, {mending_rule(error).tolerance, !report.left.empty()}, mesh, control_);
     if (options_.subdivide > 0) {
         SubdivisionReport subdivision;
         mesh = subdivide_soundly(mesh, options_.subdivide, judge, subdivision, control_);
@@ -703,7 +710,7 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
 /// Instead of a network: the input with fewer triangles.
 void Remesher::give_input(double tolerance) {
     const std::size_t vertices = options_.vertices ? *options_.vertices : options_.faces ? *options_.faces / 2 : 0;
-    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
     CoarseMesh mesh;
     for (const double part : {1.0, 0.25, 1e-4}) {
         mesh = thin_input(mesh_, judge, part * tolerance, vertices, control_);
@@ -756,8 +763,11 @@ void Remesher::finish_count() {
             aim = (*many)[0] + part * ((*few)[0] - (*many)[0]);
         }
         best_.reset();
+        const double least_network = network;
         search(std::max(std::exp(aim), 4.0));
         if (control_.cancelled() || !best_) return;
+        // Fewer cannot be had: where lines get no polygons, they come closer together.
+        if (off > 0.0 && count_of(*best_) > least_network) break;
         if (!finish()) break;
     }
     keep(std::move(*kept));
@@ -780,8 +790,7 @@ void Remesher::keep(Attempt&& attempt) {
 }
 
 void Remesher::emit(const CoarseMesh& mesh) {
-    const bool is_cut_open = result_.statistics.non_manifold_edges + result_.statistics.split_vertices > 0;
-    const CoarseMesh coarse = is_cut_open ? stitch(mesh) : mesh;
+    const CoarseMesh coarse = mesh_.is_cut_open ? stitch(mesh) : mesh;
     result_.mesh = {};
     result_.feature_edges.clear();
     result_.feature_curves.clear();

@@ -7,7 +7,7 @@
 
 namespace certa::remeshing {
 
-CoarseMesh stitch(const CoarseMesh& mesh) {
+std::vector<Index> stitched_vertices(const CoarseMesh& mesh) {
     const auto in_order = [](const Point3& a, const Point3& b) {
         return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z);
     };
@@ -22,10 +22,19 @@ CoarseMesh stitch(const CoarseMesh& mesh) {
         for (std::size_t i = 1; i < places.size(); ++i)
             if (places[i] == places[i - 1]) is_apart[places[i]] = 1;
     }
+    for (Index v = 0; v < place.size(); ++v)
+        if (is_apart[place[v]] != 0) is_apart[v] = 1;
+    for (Index v = 0; v < place.size(); ++v)
+        if (is_apart[v] != 0) place[v] = v;
+    return place;
+}
+
+CoarseMesh stitch(const CoarseMesh& mesh) {
+    const std::vector<Index> keys = stitched_vertices(mesh);
     std::vector<Index> numbers(mesh.points.size(), no_index);
     CoarseMesh out;
     const auto number_of = [&](Index v) {
-        const Index key = is_apart[place[v]] != 0 ? v : place[v];
+        const Index key = keys[v];
         if (numbers[key] == no_index)
             numbers[key] = out.add_vertex(mesh.points[v], mesh.places[v], mesh.kinds[v], mesh.curves[v]);
         return numbers[key];

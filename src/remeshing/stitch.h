@@ -6,5 +6,7 @@ namespace certa::remeshing {
 
 /// Makes one vertex of those in the very same place, but where a polygon has two of them; vertices without polygons go.
 CoarseMesh stitch(const CoarseMesh& mesh);
+/// Per vertex: the one that stands for it then.
+std::vector<Index> stitched_vertices(const CoarseMesh& mesh);
 
 }  // namespace certa::remeshing

@@ -2,7 +2,9 @@
 #include <certa/remeshing.h>
 
 #include <algorithm>
+#include <numeric>
 
+#include "core/union_find.h"
 #include "remeshing/work_mesh.h"
 
 namespace certa {
@@ -29,15 +31,38 @@ std::size_t count_open(const TriangleMesh& mesh, const std::vector<remeshing::In
 
 }  // namespace
 
+namespace remeshing {
+
+std::vector<Index> joined_points(const TriangleMesh& mesh) {
+    std::vector<Index> own(mesh.positions.size());
+    std::iota(own.begin(), own.end(), 0U);
+    std::vector<Index> first = merge_points(mesh.positions);
+    if (first == own || count_open(mesh, first) < count_open(mesh, own)) return first;
+    core::UnionFind sets(own.size());
+    for (const Triangle& t : mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i) {
+            const Index a = index_of(t[i]), b = index_of(t[(i + 1) % 3]);
+            if (first[a] == first[b]) sets.unite(a, b);
+        }
+    std::vector<Index> least(own.size(), no_index);
+    for (Index v = 0; v < own.size(); ++v) {
+        Index& set = least[sets.find(v)];
+        if (set == no_index) set = v;
+        own[v] = set;
+    }
+    return own;
+}
+
+}  // namespace remeshing
+
 WeldedSurface weld_surface(const TriangleMesh& mesh) {
     WeldedSurface welded{mesh, {}, 0};
-    std::vector<remeshing::Index> own(mesh.positions.size());
-    for (remeshing::Index v = 0; v < own.size(); ++v) own[v] = v;
-    std::vector<remeshing::Index> first = remeshing::merge_points(mesh.positions);
-    const bool joins = first != own && count_open(mesh, first) < count_open(mesh, own);
-    if (!joins) first = own;
-    for (const remeshing::Index v : first) welded.numbers.push_back(VertexId{v});
-    if (!joins) return welded;
+    const std::vector<remeshing::Index> first = remeshing::joined_points(mesh);
+    for (remeshing::Index v = 0; v < first.size(); ++v) {
+        welded.numbers.push_back(VertexId{first[v]});
+        welded.merged += first[v] != v ? 1 : 0;
+    }
+    if (welded.merged == 0) return welded;
     welded.mesh.triangles.clear();
     for (const Triangle& t : mesh.triangles) {
         const Triangle renamed{welded.numbers[index_of(t[0])], welded.numbers[index_of(t[1])],
@@ -45,7 +70,6 @@ WeldedSurface weld_surface(const TriangleMesh& mesh) {
         if (renamed[0] == renamed[1] || renamed[1] == renamed[2] || renamed[2] == renamed[0]) continue;
         welded.mesh.triangles.push_back(renamed);
     }
-    for (remeshing::Index v = 0; v < own.size(); ++v) welded.merged += first[v] != v ? 1 : 0;
     return welded;
 }
 

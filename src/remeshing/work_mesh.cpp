@@ -76,7 +76,7 @@ namespace {
 
 /// Faces without repeated corners and without repetitions of each other.
 void take_faces(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
-    const std::vector<Index> first = merge_points(mesh.positions);
+    const std::vector<Index> first = joined_points(mesh);
     for (const Edge& edge : options.features) {
         if (index_of(edge[0]) >= first.size() || index_of(edge[1]) >= first.size())
             throw InputError(
@@ -253,10 +253,28 @@ void number_edges(WorkMesh& work) {
     }
 }
 
+/// Boundary edges that were one edge.
+void find_twins(WorkMesh& work) {
+    std::vector<std::pair<std::uint64_t, Index>> open;
+    for (Index e = 0; e < work.edge_halfedges.size(); ++e) {
+        const Index h = work.edge_halfedges[e];
+        if (work.opposites[h] != no_index) continue;
+        open.push_back({pair_key(work.point_sources[work.start_of(h)], work.point_sources[work.end_of(h)]), e});
+    }
+    std::sort(open.begin(), open.end());
+    work.edge_twins.assign(work.edge_halfedges.size(), no_index);
+    for (std::size_t i = 0; i < open.size(); ++i) {
+        const bool is_first = i == 0 || open[i].first != open[i - 1].first,
+                   is_last = i + 1 == open.size() || open[i].first != open[i + 1].first;
+        if (is_first && is_last) continue;
+        work.edge_twins[open[i].second] = is_first ? open[i].second : work.edge_twins[open[i - 1].second];
+    }
+}
+
 /// Which edges are guides. Those that are no edges of the input are refused.
 void find_guides(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& options) {
     if (options.guides.empty()) return;
-    const std::vector<Index> first = merge_points(mesh.positions);
+    const std::vector<Index> first = joined_points(mesh);
     std::unordered_set<std::uint64_t> there;
     for (const Triangle& t : mesh.triangles)
         for (std::size_t i = 0; i < 3; ++i)
@@ -482,6 +500,8 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     pair_halfedges(work);
     split_vertices(work, statistics);
     number_edges(work);
+    find_twins(work);
+    work.is_cut_open = statistics.split_vertices > 0;
     find_guides(work, mesh, options);
     find_components(work);
     lay_out(work);

@@ -49,6 +49,10 @@ struct WorkMesh {
     std::vector<Index> edges;           ///< per half-edge: its edge
     std::vector<Index> edge_halfedges;  ///< per edge: its first half-edge, which defines its direction
     std::vector<Index> edge_curves;     ///< per edge: its feature curve or no_index
+    /// Per edge that was cut open, because more than two faces meet there: what it has in common with its copies;
+    /// no_index for others.
+    std::vector<Index> edge_twins;
+    bool is_cut_open = false;  ///< at edges or vertices
     std::vector<FeatureCurve> curves;
     std::vector<bool> is_corner;  ///< per vertex
     /// What is a crease by angle but too short to be one of the curves: nothing follows it, but it must not get lost.
@@ -97,6 +101,10 @@ struct WorkMesh {
 
 /// Per point: the first one with the same coordinates.
 std::vector<Index> merge_points(const std::vector<Point3>& points);
+
+/// The same where merging joins open sides, as of a soup; else only points of one triangle: two vertices in one place
+/// may be meant, where surfaces touch.
+std::vector<Index> joined_points(const TriangleMesh& mesh);
 
 /// Checks, orients and connects the input, finds features and wedges (stage 1). `count`: edges are short enough for a
 /// result of so many vertices; 0: as they are, but for very long ones.

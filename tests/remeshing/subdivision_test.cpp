@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <map>
+#include <numeric>
 
 #include "core/random.h"
 #include "core/vector3.h"
@@ -136,7 +137,9 @@ TEST(Subdivision, NeitherFoldsNorMeetsItself) {
         for (const Triangle& t : rough.triangles)
             coarse.add_polygon(std::array{index_of(t[0]), index_of(t[1]), index_of(t[2])});
         const core::TriangleTree tree(rough.positions, rough.triangles);
-        const Judge judge{rough, tree, 2.0, !has_contact(rough, {})};
+        std::vector<Index> names(rough.positions.size());
+        std::iota(names.begin(), names.end(), 0U);
+        const Judge judge{rough, tree, 2.0, !has_contact(rough, names, {})};
         CoarseMesh smooth = subdivide(subdivide(coarse));
         broken_before += find_damage(judge, smooth, {}).polygons.size();
         SubdivisionReport report;
