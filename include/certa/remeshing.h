@@ -121,7 +121,8 @@ struct WeldedSurface {
 };
 
 /// Merges equal points where that joins triangles, as `remesh` does, so that its result can be compared with a soup:
-/// elsewhere the mesh stays as it is. Points keep their numbers; triangles that name a point twice then are left out.
+/// elsewhere the mesh stays as it is. Points keep their numbers; triangles that name a point twice then, or repeat
+/// another, are left out.
 WeldedSurface weld_surface(const TriangleMesh& mesh);
 
 /// Polygons along lines of curvature.

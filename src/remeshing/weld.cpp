@@ -2,6 +2,7 @@
 #include <certa/remeshing.h>
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 #include "core/union_find.h"
@@ -62,13 +63,24 @@ WeldedSurface weld_surface(const TriangleMesh& mesh) {
         welded.numbers.push_back(VertexId{first[v]});
         welded.merged += first[v] != v ? 1 : 0;
     }
-    if (welded.merged == 0) return welded;
+    std::vector<std::array<std::uint32_t, 4>> sorted;  // corners and number
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        std::array<std::uint32_t, 3> c{};
+        for (std::size_t i = 0; i < 3; ++i) c[i] = first[index_of(mesh.triangles[t][i])];
+        std::sort(c.begin(), c.end());
+        if (c[0] != c[1] && c[1] != c[2]) sorted.push_back({c[0], c[1], c[2], static_cast<std::uint32_t>(t)});
+    }
+    std::sort(sorted.begin(), sorted.end());
+    std::vector<std::uint32_t> kept;
+    for (std::size_t i = 0; i < sorted.size(); ++i)
+        if (i == 0 || !std::equal(sorted[i].begin(), sorted[i].begin() + 3, sorted[i - 1].begin()))
+            kept.push_back(sorted[i][3]);
+    std::sort(kept.begin(), kept.end());
     welded.mesh.triangles.clear();
-    for (const Triangle& t : mesh.triangles) {
-        const Triangle renamed{welded.numbers[index_of(t[0])], welded.numbers[index_of(t[1])],
-                               welded.numbers[index_of(t[2])]};
-        if (renamed[0] == renamed[1] || renamed[1] == renamed[2] || renamed[2] == renamed[0]) continue;
-        welded.mesh.triangles.push_back(renamed);
+    for (const std::uint32_t t : kept) {
+        const Triangle& c = mesh.triangles[t];
+        welded.mesh.triangles.push_back(
+            {welded.numbers[index_of(c[0])], welded.numbers[index_of(c[1])], welded.numbers[index_of(c[2])]});
     }
     return welded;
 }
