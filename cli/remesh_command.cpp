@@ -57,6 +57,7 @@ std::vector<Edge> read_edges(const std::string& path, std::size_t vertices) {
         if (ends.size() != 2) throw IoError(path, number, "expected two vertices of an edge");
         edges.push_back({VertexId{ends[0]}, VertexId{ends[1]}});
     }
+    if (edges.empty()) throw IoError(path, 0, "names no edge: expected two vertex numbers a line, from 1");
     return edges;
 }
 

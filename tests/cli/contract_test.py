@@ -532,6 +532,9 @@ class Remesh(CommandTest):
     def test_guides_must_be_edges(self):
         self.write("guides.txt", "1 2\n1 99\n")
         self.assertIn("guides.txt", self.expect(3, "remesh", "cube.off", "--guides", "guides.txt"))
+        self.write("none.txt", "# nothing but a comment\n\n")
+        for option in ("--guides", "--features"):
+            self.assertIn("none.txt", self.expect(3, "remesh", "cube.off", option, "none.txt"))
 
 
 class Info(CommandTest):
