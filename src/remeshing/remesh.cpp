@@ -8,6 +8,8 @@
 #include <certa/remeshing.h>
 
 #include <algorithm>
+#include <array>
+#include <charconv>
 #include <chrono>
 #include <cmath>
 #include <numbers>
@@ -23,6 +25,7 @@
 #include "remeshing/isotropic.h"
 #include "remeshing/mend.h"
 #include "remeshing/missed_creases.h"
+#include "remeshing/nearer_origin.h"
 #include "remeshing/pair_triangles.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
@@ -36,6 +39,12 @@
 namespace certa {
 namespace remeshing {
 namespace {
+
+/// The fewest digits that mean this number.
+std::string text_of(double value) {
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
 
 class Stopwatch {
 public:
@@ -240,7 +249,7 @@ bool Remesher::prepare() {
 
 /// Faces whose polygons turn away or meet others: too coarse for what the surface does there.
 std::vector<Index> Remesher::broken_faces(const Draft& draft) {
-    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true)};
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
     CoarseMesh polygons = cut(draft.polygons);
     std::vector<Index> faces;
     std::vector<Index> broken = judge_input(polygons, judge).polygons;
@@ -537,7 +546,7 @@ void Remesher::give_input_within_error() {
     }
     result_.outcome = Outcome::over_budget;
     result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
-                                       std::to_string(result_.statistics.distance_bound));
+                                       text_of(result_.statistics.distance_bound));
 }
 
 void Remesher::describe_lines() {
@@ -723,10 +732,11 @@ void Remesher::give_input(double tolerance) {
     }
     result_.statistics.mended_regions = mesh_.component_count;
     result_.statistics.mended_triangles = mesh.polygon_count();
-    const std::string place = best_->flaws.empty() ? ""
-                                                   : ", first near (" + std::to_string(best_->flaws.front().x) + ", " +
-                                                         std::to_string(best_->flaws.front().y) + ", " +
-                                                         std::to_string(best_->flaws.front().z) + ")";
+    std::string place;
+    if (!best_->flaws.empty()) {
+        const Point3& p = best_->flaws.front();
+        place = ", first near (" + text_of(p.x) + ", " + text_of(p.y) + ", " + text_of(p.z) + ")";
+    }
     result_.statistics.notes.push_back("no network of lines will do" + place +
                                        ": the result is made of triangles of the input, thinned out");
     emit(mesh);
@@ -834,6 +844,8 @@ RemeshResult Remesher::run() {
 
 RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options, const RunControl& control) {
     remeshing::check_options(options);
+    if (const std::optional<Point3> origin = remeshing::far_origin(mesh))
+        return remeshing::remesh_near_origin(mesh, *origin, options, control);
     RemeshResult result = remeshing::Remesher(mesh, options, control).run();
     const double wanted = static_cast<double>(options.vertices ? *options.vertices : options.faces.value_or(0));
     const auto miss = [&](const RemeshResult& r) {

@@ -12,6 +12,8 @@
 #include <numbers>
 #include <queue>
 
+#include "remeshing/segment_distance.h"
+
 namespace certa::remeshing {
 namespace {
 
@@ -108,6 +110,7 @@ private:
     bool close_loop(Index line, Cursor cursor);
     bool meets_other(Index line) const;
     bool run_to_other(Index line, Cursor cursor, double allowed);
+    bool spirals(Index crossing, Index face, double nearest) const;
     double distance_at(Index crossing, Index face) const;
     void publish(Index line, std::size_t from, std::size_t upto);
     double chord_length(const Line& line, std::size_t k) const {
@@ -393,6 +396,23 @@ double FamilyTracer::distance_at(Index crossing, Index face) const {
     return nearest;
 }
 
+/// Whether a line has come back to a face time and again, each time closer to itself than lines may be: where a turn is
+/// shorter than the two spacings that a line does not see of itself, as on a spike, it would never end.
+bool FamilyTracer::spirals(Index crossing, Index face, double nearest) const {
+    constexpr int most = 4;
+    const Point3 p = network_.point(crossing);
+    const Index line = network_.crossing(crossing).line;
+    int turns = 0;
+    for (Index c = network_.first_chord(face); c != no_index; c = network_.chord(c).next) {
+        const Chord& chord = network_.chord(c);
+        turns +=
+            chord.line == line && distance_to_segment(p, network_.point(chord.from), network_.point(chord.to)) < nearest
+                ? 1
+                : 0;
+    }
+    return turns > most;
+}
+
 /// Makes a range of chords known to proximity.
 void FamilyTracer::publish(Index line, std::size_t from, std::size_t upto) {
     const Line& l = network_.lines()[line];
@@ -476,7 +496,8 @@ LineEnd FamilyTracer::follow(Index line, Cursor cursor, bool may_close) {
                 length > 4.0 * mesh_.mean_edge && close_loop(line, cursor))
                 return LineEnd::none;
         }
-        if (nearest < rule_.stop_below * spacing) {
+        if (nearest < rule_.stop_below * spacing ||
+            spirals(l.crossings.back(), l.faces.back(), rule_.stop_below * spacing)) {
             network_.remove_last(line);
             return LineEnd::near_line;
         }
