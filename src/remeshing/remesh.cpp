@@ -134,9 +134,7 @@ private:
     }
     double final_count(const CoarseMesh& mesh) const {
         if (!options_.vertices) return static_cast<double>(mesh.polygon_count());
-        std::vector<Index> used = mesh.corners;
-        std::sort(used.begin(), used.end());
-        return static_cast<double>(std::unique(used.begin(), used.end()) - used.begin());
+        return static_cast<double>(count_vertices(mesh, mesh_.is_cut_open));
     }
     void search(double wanted);
     struct Attempt {
@@ -368,6 +366,7 @@ Draft Remesher::draft(double error) {
 }
 
 double Remesher::count_of(const Draft& draft) {
+    if (!options_.faces && mesh_.is_cut_open) return static_cast<double>(count_vertices(draft.polygons, true));
     if (!options_.faces) return static_cast<double>(draft.polygons.points.size() - draft.merged.size());
     // Cutting into quads and triangles adds faces.
     return static_cast<double>(

@@ -29,6 +29,16 @@ std::vector<Index> stitched_vertices(const CoarseMesh& mesh) {
     return place;
 }
 
+std::size_t count_vertices(const CoarseMesh& mesh, bool stitched) {
+    std::vector<Index> used = mesh.corners;
+    if (stitched) {
+        const std::vector<Index> keys = stitched_vertices(mesh);
+        for (Index& v : used) v = keys[v];
+    }
+    std::sort(used.begin(), used.end());
+    return static_cast<std::size_t>(std::unique(used.begin(), used.end()) - used.begin());
+}
+
 CoarseMesh stitch(const CoarseMesh& mesh) {
     const std::vector<Index> keys = stitched_vertices(mesh);
     std::vector<Index> numbers(mesh.points.size(), no_index);

@@ -8,5 +8,7 @@ namespace certa::remeshing {
 CoarseMesh stitch(const CoarseMesh& mesh);
 /// Per vertex: the one that stands for it then.
 std::vector<Index> stitched_vertices(const CoarseMesh& mesh);
+/// Vertices that polygons have; `stitched`: as many as there are then.
+std::size_t count_vertices(const CoarseMesh& mesh, bool stitched);
 
 }  // namespace certa::remeshing
