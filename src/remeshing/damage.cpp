@@ -152,8 +152,11 @@ private:
         }
         constexpr double clear = 1.5;  // by so much nearer is what everybody takes
         const double x = cost_of(first, a, c), y = cost_of(second, b, d);
-        if (!first_faces || y <= clear * x + 1e-30) list.push_back(std::move(second));
-        if (!first_faces || x <= clear * y + 1e-30) list.push_back(std::move(first));
+        // Which of two diagonals in the surface is the nearer one is a matter of rounding.
+        const double rounding =
+            1e-26 * judge_.diagonal * judge_.diagonal * (distance(at(a), at(c)) + distance(at(b), at(d)));
+        if (!first_faces || y <= clear * x + rounding) list.push_back(std::move(second));
+        if (!first_faces || x <= clear * y + rounding) list.push_back(std::move(first));
     }
 
     void find_folds() {

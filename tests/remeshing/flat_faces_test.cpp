@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/vector3.h"
+#include "remeshing/damage.h"
 
 namespace certa::remeshing {
 namespace {
@@ -82,6 +83,31 @@ TEST(FlatFaces, RingsAreNotMended) {
     EXPECT_NEAR(static_cast<double>(result.statistics.vertices), 400.0, 20.0);
     EXPECT_EQ(result.statistics.mended_triangles, 0U);
     EXPECT_GT(3 * result.statistics.quads, 2 * result.statistics.faces);
+}
+
+/// Over an edge, both diagonals of a quad may lie in the surface. Which one is nearer is rounding then, and everybody's
+/// own: the quad is cut where only one is sound, however the surface lies.
+TEST(Damage, DiagonalsInTheSurfaceAreBothTried) {
+    for (int k = 0; k < 20; ++k) {
+        const double s = std::sin(0.3 * k), c = std::cos(0.3 * k);
+        const auto turned = [&](const Point3& p) {
+            const Point3 q{c * p.x - s * p.y, s * p.x + c * p.y, p.z};
+            return Point3{q.x, c * q.y - s * q.z, s * q.y + c * q.z};
+        };
+        TriangleMesh input;  // a wall x = 0 that faces -x, below a floor z = 0 that faces +z
+        for (const Point3& p : {Point3{0, 10, 0}, {0, -10, 0}, {0, -10, -8}, {0, 10, -8}, {8, -10, 0}, {8, 10, 0}})
+            input.positions.push_back(turned(p));
+        for (const auto& [a, b, d] : {std::array{0U, 1U, 2U}, {0U, 2U, 3U}, {1U, 0U, 5U}, {1U, 5U, 4U}})
+            input.triangles.push_back({VertexId{a}, VertexId{d}, VertexId{b}});
+        const core::TriangleTree tree(input.positions, input.triangles);
+        CoarseMesh mesh;
+        for (const Point3& p : {Point3{0, 1.7, -0.7}, {0, 0.5, 0}, {0, 0, 0}, {1, -2.2, 0}})
+            mesh.add_vertex(turned(p), {});
+        mesh.add_polygon(std::array<Index, 4>{0, 1, 2, 3});
+        const Damage damage = find_damage({input, tree, 30.0}, mesh, {});
+        EXPECT_TRUE(damage.polygons.empty()) << k;
+        EXPECT_EQ(damage.split, 1U) << k;
+    }
 }
 
 }  // namespace
