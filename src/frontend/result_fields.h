@@ -78,7 +78,7 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("mended_triangles", s.mended_triangles);
     put("cut_faces", s.cut_faces);
     put("held_vertices", s.held_vertices);
-    put("broken_polygons", s.broken_polygons);
+    put("subdivision_rounds", s.subdivision_rounds);
     put("distance_bound", s.distance_bound);
     put("vertices", s.vertices);
     put("faces", s.faces);

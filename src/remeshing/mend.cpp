@@ -273,15 +273,19 @@ private:
         }
         // Diagonals of quads are a little off the triangles for which the error was proved.
         const double height = rule_.error > 0.0 ? 0.005 * rule_.error : 0.1 * rule_.tolerance;
+        std::vector<Index> unused;
+        const double allowed = std::max(add_missed_creases(mesh_, judge_, result_, huge, unused),
+                                        0.9 * (rule_.reach > 0.0 ? rule_.reach : reach_of(mesh_, judge_, result_)));
         for (int round = 0; round < 6 && !control_.cancelled(); ++round) {
             CoarseMesh paired = pair_triangles(result_, group, height);
-            const Damage damage = find_damage(judge_, paired, control_);
-            if (damage.polygons.empty()) {
-                result_ = std::move(paired);
-                return;
-            }
+            std::vector<Index> broken = find_damage(judge_, paired, control_).polygons;
+            std::swap(result_, paired);
+            // A side that is gone may have been a short crease.
+            if (broken.empty()) add_missed_creases(mesh_, judge_, result_, allowed, broken);
+            if (broken.empty()) return;
+            std::swap(result_, paired);
             // Nothing is paired around what that has broken.
-            const std::vector<std::uint8_t> is_bad = mark_corners(damage.polygons, paired);
+            const std::vector<std::uint8_t> is_bad = mark_corners(broken, paired);
             for (std::size_t q = 0; q < group.size(); ++q) {
                 const auto ring = result_.polygon(q);
                 if (std::any_of(ring.begin(), ring.end(), [&](Index v) { return is_bad[v] != 0; })) group[q] = no_index;
@@ -355,10 +359,11 @@ private:
         if (rule_.reach > 0.0) {
             add_missed_creases(mesh_, judge_, result_, 0.9 * rule_.reach, apart);
         } else if (broken.empty() &&
-                   add_missed_creases(mesh_, judge_, result_, huge, broken) > 0.9 * reach_of(mesh_, judge_, result_) &&
+                   add_missed_creases(mesh_, judge_, result_, huge, broken) >
+                       0.95 * rule_.cover * reach_of(mesh_, judge_, result_) &&
                    !control_.cancelled()) {
             // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
-            add_missed_creases(mesh_, judge_, result_, 0.94 * bound(), apart);
+            add_missed_creases(mesh_, judge_, result_, rule_.cover * bound(), apart);
         }
         if (rule_.error > 0.0) add_far(result_, apart);
         bool has_changed = cut(apart, broken);

@@ -12,6 +12,7 @@ struct MendingRule {
     double crease_reach = 0.0;    ///< how far a side may be from the crease that it is; polygons around are so anyway
     double error = 0.0;           ///< polygons farther than this are broken, too; 0: any distance will do
     double reach = 0.0;           ///< how far a minor crease may be from the result; 0: as far as anything is
+    double cover = 0.94;          ///< of the bound on the distance: so far creases may be from the result
     bool all_triangles = false;   ///< neighbours that get more corners become triangles, else also quads
     std::vector<Recut> recuts = {};  ///< of the polygons, to be done first, where they do no harm
 };

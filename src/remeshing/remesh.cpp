@@ -45,6 +45,7 @@ std::string text_of(double value) {
     std::array<char, 32> text{};
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
+std::string text_of(const Point3& p) { return "(" + text_of(p.x) + ", " + text_of(p.y) + ", " + text_of(p.z) + ")"; }
 
 class Stopwatch {
 public:
@@ -690,6 +691,7 @@ MendingRule Remesher::mending_rule(double error) const {
     rule.crease_reach = arrangement_rule(best_->error).crease_error;
     rule.error = error;
     rule.reach = error;
+    if (options_.subdivide > 0) rule.cover = 0.7;  // subdivision lowers the distance, and with it what is allowed
     rule.all_triangles = options_.output == RemeshOutput::triangles;
     rule.recuts = recuts_;
     return rule;
@@ -704,12 +706,15 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
     s.mended_regions = report.regions;
     s.mended_triangles = report.triangles;
     s.cut_faces = report.cut_faces;
-    rescue_components(best_->layout(), judge, {mending_rule(error).tolerance, !report.left.empty()}, mesh, control_);
+    rescue_components(best_->layout(), judge, {mending_rule(error).tolerance, report.left}, mesh, control_);
     if (options_.subdivide > 0) {
         SubdivisionReport subdivision;
-        mesh = subdivide_soundly(mesh, options_.subdivide, judge, subdivision, control_);
-        s.held_vertices = subdivision.held;
-        s.broken_polygons = subdivision.broken;
+        mesh = subdivide_soundly(mesh, options_.subdivide, judge, subdivision, control_, &mesh_);
+        s.held_vertices = subdivision.held, s.subdivision_rounds = subdivision.rounds;
+        if (subdivision.rounds < options_.subdivide)
+            s.notes.push_back(std::to_string(subdivision.rounds) + " rounds of subdivision, not " +
+                              std::to_string(options_.subdivide) + ": more turn away or meet others, first near " +
+                              text_of(subdivision.place));
     }
     watch_.stage("mending");
     return mesh;
@@ -731,11 +736,7 @@ void Remesher::give_input(double tolerance) {
     }
     result_.statistics.mended_regions = mesh_.component_count;
     result_.statistics.mended_triangles = mesh.polygon_count();
-    std::string place;
-    if (!best_->flaws.empty()) {
-        const Point3& p = best_->flaws.front();
-        place = ", first near (" + text_of(p.x) + ", " + text_of(p.y) + ", " + text_of(p.z) + ")";
-    }
+    const std::string place = best_->flaws.empty() ? "" : ", first near " + text_of(best_->flaws.front());
     result_.statistics.notes.push_back("no network of lines will do" + place +
                                        ": the result is made of triangles of the input, thinned out");
     emit(mesh);

@@ -80,7 +80,9 @@ public:
     }
 
     std::size_t run() {
-        bool is_doubtful = rule_.is_doubtful;
+        bool is_doubtful = !rule_.left.empty();
+        for (const Point3& p : rule_.left) levels_[work_.components[judge_.tree.find_nearest(p).triangle]] = 1;
+        if (is_doubtful) assemble();
         while (!control_.cancelled() && raise(is_doubtful)) {
             assemble();
             is_doubtful = true;

@@ -5,8 +5,8 @@
 namespace certa::remeshing {
 
 struct RescueRule {
-    double tolerance = 0.0;   ///< by how much triangles of the input may be thinned out at first
-    bool is_doubtful = true;  ///< folds and contacts have to be looked for; else only the topology is compared
+    double tolerance = 0.0;    ///< by how much triangles of the input may be thinned out at first
+    std::vector<Point3> left;  ///< where mending has left something broken; where nothing, only topology is compared
 };
 
 /// Replaces components whose topology is not the input's, or with polygons that turn away or meet others, by triangles

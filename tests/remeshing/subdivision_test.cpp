@@ -144,7 +144,7 @@ TEST(Subdivision, NeitherFoldsNorMeetsItself) {
         broken_before += find_damage(judge, smooth, {}).polygons.size();
         SubdivisionReport report;
         CoarseMesh sound = subdivide_soundly(coarse, 2, judge, report, {});
-        EXPECT_EQ(report.broken, 0U);
+        EXPECT_EQ(report.rounds, 2U);
         EXPECT_TRUE(find_damage(judge, sound, {}).polygons.empty());
         EXPECT_EQ(sound.points.size(), smooth.points.size());
         held += report.held, all += sound.points.size();
@@ -152,6 +152,28 @@ TEST(Subdivision, NeitherFoldsNorMeetsItself) {
     EXPECT_GT(broken_before, 0U);
     EXPECT_GT(held, 0U);
     EXPECT_LT(held, all / 2);
+}
+
+/// A piece of a polygon may turn away from what is right below it, though the whole does not.
+TEST(Subdivision, IsLeftOutRatherThanBroken) {
+    constexpr double height = 1e-3;
+    const TriangleMesh input{
+        {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, {0.6, 0.6, height}, {0.6, 0.8, height}, {0.8, 0.6, height}},
+        {{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{3}, VertexId{4}, VertexId{5}}}};
+    const core::TriangleTree tree(input.positions, input.triangles);
+    const Judge judge{input, tree, 20.0, true};
+    CoarseMesh coarse;
+    for (const Point3& p : {Point3{0, 0, height}, Point3{4, 0, height}, Point3{0, 4, height}})
+        coarse.add_vertex(p, {}, VertexKind::corner);
+    coarse.add_polygon(std::array<Index, 3>{0, 1, 2});
+    ASSERT_TRUE(find_damage(judge, coarse, {}).polygons.empty());
+    CoarseMesh broken = subdivide(coarse);
+    EXPECT_EQ(find_damage(judge, broken, {}).polygons.size(), 1U);
+    SubdivisionReport report;
+    const CoarseMesh sound = subdivide_soundly(coarse, 1, judge, report, {});
+    EXPECT_EQ(report.rounds, 0U);
+    EXPECT_EQ(report.place, coarse.points[0]);
+    EXPECT_EQ(sound.polygon_count(), 1U);
 }
 
 }  // namespace
