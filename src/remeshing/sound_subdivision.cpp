@@ -121,7 +121,7 @@ bool cut_polygons(CoarseMesh& mesh, const std::vector<Index>& polygons, const Ju
 
 CoarseMesh subdivide_soundly(const CoarseMesh& mesh, std::uint64_t rounds, const Judge& judge,
                              SubdivisionReport& report, const RunControl& control, const WorkMesh* creases) {
-    constexpr int most_cuts = 4;
+    constexpr int most_cuts = 1;
     report = {};
     for (report.rounds = rounds; report.rounds > 0; --report.rounds) {
         CoarseMesh coarse = mesh;

@@ -241,7 +241,7 @@ std::vector<Case> make_cases(std::uint32_t fine) {
         {"cubes at a face, not glued", together({box(1, 1, 1), moved(box(1, 1, 1), 1.0, {1, 0, 0})})},
         {"cubes at an edge, soup", soup(together({box(1, 1, 1), moved(box(1, 1, 1), 1.0, {1, 1, 0})}))},
         {"box in a box", together({box(3, 3, 3), moved(box(1, 1, 1), 1.0, {1, 1, 1})})},
-        {"sphere in a sphere", together({ball, moved(ball, 0.9, {})})},
+        {"sphere in a sphere", together({ball, moved(ball, 0.7, {})})},
         {"spheres that cross", together({ball, moved(ball, 1.0, {0.7, 0.1, 0.2})})},
         {"spheres at a vertex", glued(together({sphere, moved(sphere, 1.0, 2.0 * sphere.positions[0])}))},
         {"sphere and its equator's disc",
