@@ -21,12 +21,14 @@
 #include "remeshing/caps.h"
 #include "remeshing/crowded.h"
 #include "remeshing/flat_faces.h"
+#include "remeshing/give_result.h"
 #include "remeshing/guides.h"
 #include "remeshing/isotropic.h"
 #include "remeshing/mend.h"
 #include "remeshing/missed_creases.h"
 #include "remeshing/nearer_origin.h"
 #include "remeshing/pair_triangles.h"
+#include "remeshing/place_and_cut.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
 #include "remeshing/rescue.h"
@@ -157,11 +159,9 @@ private:
     Damage judge_input(CoarseMesh& mesh, Judge& judge);
     void give_input(double tolerance);
     void finish_count();
-    void emit(const CoarseMesh& mesh);
+    void emit(const CoarseMesh& mesh) { give_polygons(mesh_.is_cut_open ? stitch(mesh) : mesh, result_); }
     PlacementReport place(CoarseMesh& mesh, const PlacementOptions& options = {});
-    void place_and_cut(const CoarseMesh& polygons, CoarseMesh& coarse);
     CoarseMesh cut(const CoarseMesh& polygons);
-    void describe_lines();
     void describe_polygons();
 
     const RemeshOptions& options_;
@@ -549,25 +549,6 @@ void Remesher::give_input_within_error() {
                                        text_of(result_.statistics.distance_bound));
 }
 
-void Remesher::describe_lines() {
-    const Network& network = best_->network;
-    for (const Line& line : network.lines()) {
-        if (line.faces.empty()) continue;
-        result_.statistics.closed_lines += line.closed ? 1 : 0;
-        ++(line.family == along_max ? result_.statistics.lines_max : result_.statistics.lines_min);
-        if (!options_.lines) continue;
-        CurvatureLine out{line.family == along_max, line.closed, {}};
-        for (const Index c : line.crossings) out.points.push_back(network.point(c));
-        result_.lines.push_back(std::move(out));
-    }
-    for (const FieldUmbilic& u : field_.umbilics) {
-        const auto& f = mesh_.faces[u.face];
-        const Point3 place =
-            u.weights[0] * mesh_.points[f[0]] + u.weights[1] * mesh_.points[f[1]] + u.weights[2] * mesh_.points[f[2]];
-        result_.umbilics.push_back({place, mesh_.face_sources[u.face], u.half_turns});
-    }
-}
-
 /// Vertices of the input's own curves, for placement along them.
 PlacementReport Remesher::place(CoarseMesh& mesh, const PlacementOptions& options) {
     if (!options_.placement) return {};
@@ -609,37 +590,6 @@ void Remesher::describe_polygons() {
     s.quad_share_without_t = static_cast<double>(best_->counts.quads_without_t) / polygons;
 }
 
-/// Placed as it will be cut in the end, which is clear after a few rounds; where sides are far off after all of them,
-/// once more. (A bound is proved before polygons are cut anew, and asked again after it.)
-void Remesher::place_and_cut(const CoarseMesh& polygons, CoarseMesh& coarse) {
-    PlacementOptions options;
-    options.rounds = 4;
-    options.peak_rounds = 0;
-    CoarseMesh cut = coarse, known = polygons;  // with open faces, and without
-    const auto place_all = [&](double far) {
-        const double rms = place(cut, options).rms_after;
-        std::copy_n(cut.points.begin(), known.points.size(), known.points.begin());
-        const std::vector<Recut> recuts = find_far_recuts(recut(known, recuts_), *tree_, far * rms);
-        recuts_.insert(recuts_.end(), recuts.begin(), recuts.end());
-        return !recuts.empty();
-    };
-    place_all(4.0);
-    const std::vector<Recut> joins = find_recuts(recut(known, recuts_));
-    recuts_.insert(recuts_.end(), joins.begin(), joins.end());
-    options = {};
-    options.rounds = 9;
-    for (int round = 0; round < 2; ++round) {
-        std::swap(cut.points, coarse.points);
-        std::swap(cut.places, coarse.places);
-        cut = recut(coarse, recuts_);
-        if (!place_all(8.0)) break;
-        options.rounds = 1;
-        options.peak_rounds = 4;
-    }
-    coarse.points = cut.points;
-    coarse.places = cut.places;
-}
-
 /// Cuts and places the polygons. False: there are none, because no network has only disks for faces.
 bool Remesher::finish() {
     recuts_.clear();
@@ -660,7 +610,8 @@ bool Remesher::finish() {
         coarse.points = filled.points;
         coarse.places = filled.places;
     } else if (places && is_cut_anew) {
-        place_and_cut(polygons, coarse);
+        const auto place_mesh = [&](CoarseMesh& m, const PlacementOptions& options) { return place(m, options); };
+        recuts_ = place_and_cut(polygons, *tree_, place_mesh, coarse);
     } else if (places) {
         place(coarse);
     }
@@ -799,28 +750,6 @@ void Remesher::keep(Attempt&& attempt) {
     emit(attempt.mesh);
 }
 
-void Remesher::emit(const CoarseMesh& mesh) {
-    const CoarseMesh coarse = mesh_.is_cut_open ? stitch(mesh) : mesh;
-    result_.mesh = {};
-    result_.feature_edges.clear();
-    result_.feature_curves.clear();
-    result_.mesh.positions = coarse.points;
-    for (const Index c : coarse.corners) result_.mesh.corners.push_back(VertexId{c});
-    result_.mesh.offsets = coarse.offsets;
-    for (const FeatureEdge& e : coarse.feature_edges) {
-        result_.feature_edges.push_back({VertexId{e.a}, VertexId{e.b}});
-        result_.feature_curves.push_back(e.curve);
-    }
-    RemeshStatistics& s = result_.statistics;
-    s.vertices = coarse.points.size();
-    s.faces = coarse.polygon_count();
-    s.quads = s.triangles = 0;
-    for (std::size_t i = 0; i < s.faces; ++i) {
-        s.quads += coarse.polygon(i).size() == 4 ? 1 : 0;
-        s.triangles += coarse.polygon(i).size() == 3 ? 1 : 0;
-    }
-}
-
 RemeshResult Remesher::run() {
     if (prepare()) {
         if (options_.vertices || options_.faces) {
@@ -834,7 +763,7 @@ RemeshResult Remesher::run() {
         result_.outcome = Outcome::cancelled;
         return std::move(result_);
     }
-    describe_lines();
+    give_lines(best_->network, field_, mesh_, options_.lines, result_);
     control_.report("done", 1.0);
     return std::move(result_);
 }

@@ -245,6 +245,36 @@ TEST(JoinTriangles, IsNotDoneWhereAPolygonIsGone) {
     EXPECT_EQ(recut(less, recuts).corners, less.corners);
 }
 
+TEST(JoinTriangles, SidesFarFromTheInputAreCutAnew) {
+    // A valley along x = 1 below two quads whose common side bridges it from y = 0 to y = 1 ... at x = 1 +- 0.9.
+    TriangleMesh valley;
+    const auto id = [](std::uint32_t v) { return VertexId{v}; };
+    for (const double y : {-1.0, 2.0})
+        for (const double x : {-1.0, 1.0, 3.0}) valley.positions.push_back({x, y, std::abs(x - 1.0)});
+    valley.triangles = {{id(0), id(1), id(4)}, {id(0), id(4), id(3)}, {id(1), id(2), id(5)}, {id(1), id(5), id(4)}};
+    const core::TriangleTree input(valley.positions, valley.triangles);
+    CoarseMesh mesh;
+    for (const Point3& p : {Point3{0, 0, 1}, {1, 0, 0}, {2, 0, 1}, {2, 1, 1}, {1, 1, 0}, {0, 1, 1}})
+        mesh.add_vertex(p, {});
+    mesh.add_polygon(std::array<Index, 4>{0, 1, 2, 5}, 0);  // the side from 2 to 5 is 1 above the valley
+    mesh.add_polygon(std::array<Index, 4>{2, 3, 4, 5}, 1);
+    const std::vector<Recut> recuts = find_far_recuts(mesh, input, 0.1);
+    ASSERT_EQ(recuts.size(), 1U);
+    const CoarseMesh cut = recut(mesh, recuts);
+    EXPECT_EQ(cut.polygon_count(), 4U);
+    EXPECT_NEAR(area(cut), 2.0, 1e-12);
+    bool has_bottom = false;
+    for (std::size_t q = 0; q < cut.polygon_count(); ++q) {
+        const auto ring = cut.polygon(q);
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            has_bottom = has_bottom || (ring[i] == 1 && ring[(i + 1) % ring.size()] == 4);
+    }
+    EXPECT_TRUE(has_bottom);
+    EXPECT_TRUE(find_far_recuts(mesh, input, 2.0).empty());
+    mesh.feature_edges.push_back({2, 5, 0});
+    EXPECT_TRUE(find_far_recuts(mesh, input, 0.1).empty());
+}
+
 TEST(JoinTriangles, NothingGoesOverACreaseOrABend) {
     CoarseMesh cut = make_quad_dominant(shifted_rows(1)), bent = cut;
     for (Index v = 0; v < cut.points.size(); ++v)

@@ -1,0 +1,48 @@
+// Copies into the public structures.
+#include "remeshing/give_result.h"
+
+#include "core/vector3.h"
+
+namespace certa::remeshing {
+
+void give_polygons(const CoarseMesh& mesh, RemeshResult& result) {
+    result.mesh = {};
+    result.feature_edges.clear();
+    result.feature_curves.clear();
+    result.mesh.positions = mesh.points;
+    for (const Index c : mesh.corners) result.mesh.corners.push_back(VertexId{c});
+    result.mesh.offsets = mesh.offsets;
+    for (const FeatureEdge& e : mesh.feature_edges) {
+        result.feature_edges.push_back({VertexId{e.a}, VertexId{e.b}});
+        result.feature_curves.push_back(e.curve);
+    }
+    RemeshStatistics& s = result.statistics;
+    s.vertices = mesh.points.size();
+    s.faces = mesh.polygon_count();
+    s.quads = s.triangles = 0;
+    for (std::size_t i = 0; i < s.faces; ++i) {
+        s.quads += mesh.polygon(i).size() == 4 ? 1 : 0;
+        s.triangles += mesh.polygon(i).size() == 3 ? 1 : 0;
+    }
+}
+
+void give_lines(const Network& network, const DirectionField& field, const WorkMesh& mesh, bool with_lines,
+                RemeshResult& result) {
+    for (const Line& line : network.lines()) {
+        if (line.faces.empty()) continue;
+        result.statistics.closed_lines += line.closed ? 1 : 0;
+        ++(line.family == along_max ? result.statistics.lines_max : result.statistics.lines_min);
+        if (!with_lines) continue;
+        CurvatureLine out{line.family == along_max, line.closed, {}};
+        for (const Index c : line.crossings) out.points.push_back(network.point(c));
+        result.lines.push_back(std::move(out));
+    }
+    for (const FieldUmbilic& u : field.umbilics) {
+        const auto& f = mesh.faces[u.face];
+        const Point3 place =
+            u.weights[0] * mesh.points[f[0]] + u.weights[1] * mesh.points[f[1]] + u.weights[2] * mesh.points[f[2]];
+        result.umbilics.push_back({place, mesh.face_sources[u.face], u.half_turns});
+    }
+}
+
+}  // namespace certa::remeshing
