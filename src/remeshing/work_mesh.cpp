@@ -390,9 +390,9 @@ void cut_face(const std::array<Index, 3>& f, const std::array<Index, 3>& middle,
 
 }  // namespace
 
-void split_long_edges(WorkMesh& work, double longest, Index input_vertices) {
+void split_long_edges(WorkMesh& work, double longest, Index input_vertices, double most_faces) {
     if (!(longest > 0.0)) return;
-    for (int round = 0; round < 16; ++round) {
+    for (int round = 0; round < 16 && static_cast<double>(work.faces.size()) <= most_faces; ++round) {
         core::PairMap middles(64);
         std::vector<std::array<Index, 3>> faces;
         std::vector<Index> sources;
@@ -494,7 +494,9 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     statistics.input_vertices = mesh.positions.size();
     statistics.input_triangles = mesh.triangles.size();
     take_faces(work, mesh, options, statistics);
-    split_long_edges(work, longest_edge(work, count), static_cast<Index>(mesh.positions.size()));
+    // Needles come apart into ever more of them.
+    const double most_faces = count == 0.0 ? 1e300 : 4.0 * static_cast<double>(work.faces.size()) + 20.0 * count;
+    split_long_edges(work, longest_edge(work, count), static_cast<Index>(mesh.positions.size()), most_faces);
     statistics.non_manifold_edges = pair_halfedges(work);
     orient(work, statistics);
     pair_halfedges(work);

@@ -113,8 +113,9 @@ std::vector<Index> joined_points(const TriangleMesh& mesh);
 WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics,
                          double count = 0.0);
 
-/// Halves edges longer than `longest`, and their triangles with them, until none is left. The surface stays as it is.
-void split_long_edges(WorkMesh& mesh, double longest, Index input_vertices);
+/// Halves edges longer than `longest`, and their triangles with them, until none is left or there are more faces than
+/// `most_faces`. The surface stays as it is.
+void split_long_edges(WorkMesh& mesh, double longest, Index input_vertices, double most_faces);
 /// Features by angle, boundary, and what is tagged; fills edge_curves, curves, is_corner.
 void find_features(WorkMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics);
 /// Fills wedges and intrinsic angles; needs features.
