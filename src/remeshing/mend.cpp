@@ -19,6 +19,7 @@
 
 #include "core/parallel.h"
 #include "core/vector3.h"
+#include "remeshing/flat_triangles.h"
 #include "remeshing/missed_creases.h"
 #include "remeshing/pair_triangles.h"
 #include "remeshing/templates.h"
@@ -262,6 +263,7 @@ private:
         cut = make_triangles(cut, judge_.tree);
         for (const CoarseMesh& part : {changed, cut})
             for (std::size_t q = 0; q < part.polygon_count(); ++q) result_.add_polygon(part.polygon(q), part.parent(q));
+        result_ = without_flat_triangles(result_);
     }
 
     /// Flat parts of regions become quads; those that would do harm are cut again.

@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "core/vector3.h"
 #include "remeshing/coarse_meshes.h"
+#include "remeshing/flat_triangles.h"
 #include "remeshing/join_triangles.h"
 
 namespace certa::remeshing {
@@ -213,6 +214,25 @@ double area(const CoarseMesh& mesh) {
 }
 
 CoarseMesh join(const CoarseMesh& mesh) { return recut(mesh, find_recuts(mesh)); }
+
+TEST(FlatTriangles, TheCornerInASideGoesToThePolygonBeyond) {
+    CoarseMesh mesh;
+    for (const Point3& p : {Point3{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {0, 1, 0}, {0.5, 1, 0}, {1, 2, 0}})
+        mesh.add_vertex(p, {});
+    mesh.add_polygon(std::array<Index, 4>{0, 1, 2, 3}, 0);
+    mesh.add_polygon(std::array<Index, 3>{3, 2, 4}, 1);  // no area
+    mesh.add_polygon(std::array<Index, 3>{4, 2, 5}, 1);
+    mesh.add_polygon(std::array<Index, 3>{3, 4, 5}, 1);
+    const CoarseMesh better = without_flat_triangles(mesh);
+    EXPECT_EQ(better.polygon_count(), 5U);
+    EXPECT_NEAR(area(better), area(mesh), 1e-12);
+    for (std::size_t q = 0; q < better.polygon_count(); ++q)
+        EXPECT_GT(area(better.points, {better.polygon(q).begin(), better.polygon(q).end()}), 0.1);
+    mesh.feature_edges.push_back({2, 3, 7});
+    const CoarseMesh creased = without_flat_triangles(mesh);
+    ASSERT_EQ(creased.feature_edges.size(), 2U);
+    for (const FeatureEdge& e : creased.feature_edges) EXPECT_TRUE((e.a == 4 || e.b == 4) && e.curve == 7);
+}
 
 TEST(JoinTriangles, TwoTNodesNearEachOtherCancel) {
     for (const Index shift : {0U, 1U}) {
