@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "core/vector3.h"
+#include "facetted_pipe.h"
 #include "remeshing/damage.h"
 
 namespace certa::remeshing {
@@ -64,21 +65,9 @@ TEST(FlatFaces, RefusesRimsThatCross) {
 
 /// A pipe of flat facets: its ends are flat rings, whose rims have all the vertices that they need.
 TEST(FlatFaces, RingsAreNotMended) {
-    constexpr std::uint32_t n = 16;
-    TriangleMesh pipe;
-    for (const auto& [radius, z] : {std::pair{1.0, 0.0}, {1.0, 3.0}, {0.7, 3.0}, {0.7, 0.0}})
-        for (std::uint32_t i = 0; i < n; ++i)
-            pipe.positions.push_back({radius * std::cos(2.0 * pi * i / n), radius * std::sin(2.0 * pi * i / n), z});
-    for (std::uint32_t ring = 0; ring < 4; ++ring)
-        for (std::uint32_t i = 0; i < n; ++i) {
-            const std::uint32_t next = (ring + 1) % 4, j = (i + 1) % n;
-            const VertexId a{ring * n + i}, b{ring * n + j}, c{next * n + j}, d{next * n + i};
-            pipe.triangles.push_back({a, b, c});
-            pipe.triangles.push_back({a, c, d});
-        }
     RemeshOptions options;
     options.vertices = 400;
-    const RemeshResult result = remesh(pipe, options);
+    const RemeshResult result = remesh(facetted_pipe(16), options);
     ASSERT_EQ(result.outcome, Outcome::done);
     EXPECT_NEAR(static_cast<double>(result.statistics.vertices), 400.0, 20.0);
     EXPECT_EQ(result.statistics.mended_triangles, 0U);

@@ -10,6 +10,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "facetted_pipe.h"
 #include "mesh/generators_surfaces.h"
 #include "remeshing/polygons.h"
 #include "remeshing/trace_lines.h"
@@ -269,24 +270,6 @@ TEST(Remesh, ABoxIsSixFaces) {
     EXPECT_EQ(result.statistics.faces, 6U);
     EXPECT_EQ(result.feature_edges.size(), 12U);
     EXPECT_EQ(result.statistics.corners, 8U);
-}
-
-/// A pipe of n flat facets around, between circles of radius 1 and 0.7, from z = 0 to z = 3.
-TriangleMesh facetted_pipe(std::uint32_t n) {
-    TriangleMesh mesh;
-    for (const auto& [radius, z] : {std::pair{1.0, 0.0}, {1.0, 3.0}, {0.7, 3.0}, {0.7, 0.0}})
-        for (std::uint32_t i = 0; i < n; ++i) {
-            const double angle = 2.0 * pi * i / n;
-            mesh.positions.push_back({radius * std::cos(angle), radius * std::sin(angle), z});
-        }
-    for (std::uint32_t ring = 0; ring < 4; ++ring)
-        for (std::uint32_t i = 0; i < n; ++i) {
-            const std::uint32_t next = (ring + 1) % 4, j = (i + 1) % n;
-            const VertexId a{ring * n + i}, b{ring * n + j}, c{next * n + j}, d{next * n + i};
-            mesh.triangles.push_back({a, b, c});
-            mesh.triangles.push_back({a, c, d});
-        }
-    return mesh;
 }
 
 TEST(Remesh, SpendsVerticesWhereNothingIsCurved) {
