@@ -44,12 +44,18 @@ void Caps::lower(Index wedge, double cap) {
 }
 
 void Caps::refine(const Flaws& flaws, const Graph& graph, const std::vector<std::vector<Index>>& faces,
-                  const Spacing& spacing) {
+                  const Spacing& spacing, bool all) {
+    std::vector<bool> is_tied(mesh_.patch_count, true);
+    if (!all)
+        for (const FlawPlace& place : flaws.places) {
+            lower_near(place, graph, spacing);
+            if (place.size > 0.0) is_tied[place.patch] = false;
+        }
     patch_caps_.resize(mesh_.patch_count, 0.0);
     std::vector<bool> flawed(mesh_.patch_count, false);
     std::vector<std::array<Point3, 2>> boxes(mesh_.patch_count,
                                              {Point3{1e300, 1e300, 1e300}, Point3{-1e300, -1e300, -1e300}});
-    for (const Index p : flaws.patches) flawed[p] = true;
+    for (const Index p : flaws.patches) flawed[p] = is_tied[p];
     for (Index f = 0; f < mesh_.face_count(); ++f) {
         if (!flawed[mesh_.patches[f]]) continue;
         auto& [low, high] = boxes[mesh_.patches[f]];
@@ -60,12 +66,25 @@ void Caps::refine(const Flaws& flaws, const Graph& graph, const std::vector<std:
         }
     }
     for (const Index p : flaws.patches)
-        patch_caps_[p] = patch_caps_[p] == 0.0 ? 0.4 * distance(boxes[p][0], boxes[p][1]) : 0.6 * patch_caps_[p];
+        if (flawed[p])
+            patch_caps_[p] = patch_caps_[p] == 0.0 ? 0.4 * distance(boxes[p][0], boxes[p][1]) : 0.6 * patch_caps_[p];
     for (Index w = 0; w < mesh_.wedge_count(); ++w) {
         const Index p = mesh_.patches[mesh_.wedge_first[w] / 3];
         if (flawed[p]) lower(w, patch_caps_[p]);
     }
-    lower_around(flaws.faces, graph, faces, spacing, 0.0, caps_);
+    if (all) lower_around(flaws.faces, graph, faces, spacing, 0.0, caps_);
+}
+
+/// So that a line passes what has no line, or one beside the node where a face meets itself.
+void Caps::lower_near(const FlawPlace& place, const Graph& graph, const Spacing& spacing) {
+    std::vector<std::uint8_t> is_near(mesh_.points.size(), 0);
+    for (const Index n : place.nodes)
+        for (const Index v : mesh_.faces[graph.nodes[n].place.face]) is_near[v] = 1;
+    for (Index w = 0; w < mesh_.wedge_count(); ++w) {
+        if (is_near[mesh_.wedge_vertices[w]] == 0 || mesh_.patches[mesh_.wedge_first[w] / 3] != place.patch) continue;
+        const double cap = 0.6 * std::min(spacing.at[0][w], spacing.at[1][w]);
+        lower(w, place.size > 0.0 ? std::min(cap, 0.7 * place.size) : cap);
+    }
 }
 
 void Caps::refine_broken(const std::vector<Index>& broken, const Graph& graph,

@@ -26,15 +26,17 @@ public:
     void loosen(double error);
 
     void lower(Index wedge, double cap);
-    /// Where faces are no polygons: all over a patch, or around nodes.
+    /// Where faces are no polygons: near the places where one more line might do; where there are none, or if that
+    /// has not helped before (`all`), all over a patch and around all nodes of a face.
     void refine(const Flaws& flaws, const Graph& graph, const std::vector<std::vector<Index>>& faces,
-                const Spacing& spacing);
+                const Spacing& spacing, bool all);
     /// Around faces whose polygons are broken; can be taken back once.
     void refine_broken(const std::vector<Index>& broken, const Graph& graph,
                        const std::vector<std::vector<Index>>& faces, const Spacing& spacing);
     void take_back() { broken_caps_ = before_; }
 
 private:
+    void lower_near(const FlawPlace& place, const Graph& graph, const Spacing& spacing);
     void lower_around(const std::vector<Index>& list, const Graph& graph, const std::vector<std::vector<Index>>& faces,
                       const Spacing& spacing, double least, std::vector<double>& caps) const;
 

@@ -2,15 +2,9 @@
 // Ends of lines that lie close to each other on a crease or boundary become one vertex, and nodes in one place.
 #include <span>
 
-#include "remeshing/arrangement.h"
-#include "remeshing/coarse_mesh.h"
+#include "remeshing/contraction.h"
 
 namespace certa::remeshing {
-
-/// A vertex that was merged into another; both by their numbers, which stay.
-struct MergedVertex {
-    Index vertex = no_index, into = no_index;
-};
 
 /// Contracts sides on features that are shorter than `reach` (per vertex; the smaller of the two ends counts), and
 /// others that are shorter than half of it, shortest first. Lines of both families, and those on either side of a

@@ -7,6 +7,9 @@
 #include "remeshing/polygons.h"
 
 #include <algorithm>
+#include <map>
+
+#include "core/vector3.h"
 
 namespace certa::remeshing {
 
@@ -50,6 +53,47 @@ Index triangle_beside(const Graph& graph, const Network& network, Index h) {
     return side == no_index ? no_index : side / 3;
 }
 
+namespace {
+
+/// The graph's parts in a patch that nothing ties to the largest of them: rims of holes that no line has reached.
+void add_islands(const Graph& graph, const Network& network, Index patch, std::vector<FlawPlace>& places) {
+    std::vector<Index> above(graph.nodes.size(), no_index);  // a tree towards one node of each part
+    const auto root_of = [&](Index n) {
+        while (above[n] != n) n = above[n] = above[above[n]];
+        return n;
+    };
+    for (Index e = 0; e < graph.edges.size(); ++e) {
+        const GraphEdge& edge = graph.edges[e];
+        if (!edge.alive()) continue;
+        if (patch_beside(graph, network, 2 * e) != patch && patch_beside(graph, network, 2 * e + 1) != patch) continue;
+        for (const Index n : {edge.a, edge.b})
+            if (above[n] == no_index) above[n] = n;
+        above[root_of(edge.a)] = root_of(edge.b);
+    }
+    std::map<Index, FlawPlace> parts;
+    for (Index n = 0; n < above.size(); ++n)
+        if (above[n] != no_index) parts[root_of(n)].nodes.push_back(n);
+    std::size_t most = 0;
+    double largest = -1.0;
+    std::vector<FlawPlace> found;
+    for (auto& [root, part] : parts) {
+        Point3 low = graph.nodes[root].point, high = low;
+        for (const Index n : part.nodes) {
+            const Point3& p = graph.nodes[n].point;
+            low = {std::min(low.x, p.x), std::min(low.y, p.y), std::min(low.z, p.z)};
+            high = {std::max(high.x, p.x), std::max(high.y, p.y), std::max(high.z, p.z)};
+        }
+        part.patch = patch;
+        part.size = distance(low, high);
+        if (part.size > largest) largest = part.size, most = found.size();
+        found.push_back(std::move(part));
+    }
+    for (std::size_t i = 0; i < found.size(); ++i)
+        if (i != most) places.push_back(std::move(found[i]));
+}
+
+}  // namespace
+
 Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<std::vector<Index>>& faces) {
     const WorkMesh& mesh = network.mesh();
     std::vector<std::int64_t> rest = characteristics(mesh);
@@ -66,13 +110,19 @@ Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<s
         bool pinched = faces[f].size() < 3;
         for (const Index h : faces[f]) {
             const Index n = graph.tail(h);
-            pinched = pinched || last_seen[n] == f;
+            if (last_seen[n] == f) {
+                pinched = true;
+                flaws.places.push_back({patch, {n}, 0.0});
+            }
             last_seen[n] = f;
         }
         if (pinched) flaws.faces.push_back(f);
     }
     for (Index p = 0; p < mesh.patch_count; ++p)
-        if (rest[p] != 0 || !met[p]) flaws.patches.push_back(p);
+        if (rest[p] != 0 || !met[p]) {
+            flaws.patches.push_back(p);
+            add_islands(graph, network, p, flaws.places);
+        }
     return flaws;
 }
 

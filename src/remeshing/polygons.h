@@ -6,10 +6,18 @@
 
 namespace certa::remeshing {
 
+/// Nodes beside a patch near which one more line might help.
+struct FlawPlace {
+    Index patch = no_index;
+    std::vector<Index> nodes;
+    double size = 0.0;  ///< of what they surround; 0 where they are one node
+};
+
 /// Where the graph's faces are no polygons yet.
 struct Flaws {
-    std::vector<Index> patches;  ///< of the work mesh: not all faces there are disks
-    std::vector<Index> faces;    ///< of the graph: they meet themselves in a node
+    std::vector<Index> patches;     ///< of the work mesh: not all faces there are disks
+    std::vector<Index> faces;       ///< of the graph: they meet themselves in a node
+    std::vector<FlawPlace> places;  ///< nodes that faces meet themselves in, parts of the graph that lines do not tie
     bool empty() const { return patches.empty() && faces.empty(); }
 };
 /// The patch of the work mesh to the left of a half-edge; no_index outside the boundary.

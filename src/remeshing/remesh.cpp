@@ -10,7 +10,6 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <chrono>
 #include <cmath>
 #include <numbers>
 
@@ -19,6 +18,8 @@
 #include "core/triangle_tree.h"
 #include "remeshing/cancel_umbilics.h"
 #include "remeshing/caps.h"
+#include "remeshing/check_options.h"
+#include "remeshing/coarsen.h"
 #include "remeshing/crowded.h"
 #include "remeshing/flat_faces.h"
 #include "remeshing/give_result.h"
@@ -35,6 +36,7 @@
 #include "remeshing/share_nodes.h"
 #include "remeshing/sound_subdivision.h"
 #include "remeshing/stitch.h"
+#include "remeshing/stopwatch.h"
 #include "remeshing/templates.h"
 #include "remeshing/trace_lines.h"
 
@@ -42,50 +44,14 @@ namespace certa {
 namespace remeshing {
 namespace {
 
+constexpr double most_trimmed = 0.12;  ///< of what a network has, in vertices or faces
+
 /// The fewest digits that mean this number.
 std::string text_of(double value) {
     std::array<char, 32> text{};
     return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
 }
 std::string text_of(const Point3& p) { return "(" + text_of(p.x) + ", " + text_of(p.y) + ", " + text_of(p.z) + ")"; }
-
-class Stopwatch {
-public:
-    explicit Stopwatch(RemeshStatistics& statistics) : statistics_(statistics) {}
-    void stage(const char* name) {
-        const auto now = std::chrono::steady_clock::now();
-        const double seconds = std::chrono::duration<double>(now - start_).count();
-        start_ = now;
-        for (auto& [known, sum] : statistics_.stage_seconds)
-            if (known == name) {
-                sum += seconds;
-                return;
-            }
-        statistics_.stage_seconds.push_back({name, seconds});
-    }
-
-private:
-    RemeshStatistics& statistics_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
-
-[[noreturn]] void refuse_option(const std::string& message) {
-    throw InputError({{DefectKind::option_out_of_range, {}, {}, message}});
-}
-
-void check_options(const RemeshOptions& options) {
-    const int goals = options.error.has_value() + options.vertices.has_value() + options.faces.has_value();
-    if (goals > 1) refuse_option("error, vertices and faces exclude each other: give one of them");
-    if (options.error && !(options.error->value > 0.0)) refuse_option("error must be above 0");
-    if ((options.vertices && *options.vertices < 4) || (options.faces && *options.faces < 4))
-        refuse_option("a surface needs four vertices and faces at least");
-    if (!(options.isotropy >= 0.0 && options.isotropy <= 1.0)) refuse_option("isotropy must lie in [0, 1]");
-    if (!(options.transfer >= 0.0 && options.transfer <= 2.0)) refuse_option("transfer must lie in [0, 2]");
-    if (options.smooth && !(options.smooth->value >= 0.0)) refuse_option("smooth must not be below 0");
-    if (!options.guides.empty() && options.smoothing_method != SmoothingMethod::screened)
-        refuse_option("guides need the smoothing method screened, which can hold directions fast");
-    if (options.max_degree != 0 && options.max_degree < 3) refuse_option("max_degree must be 3 at least, or 0");
-}
 
 /// One network and what came of it.
 struct Draft {
@@ -131,6 +97,7 @@ private:
     std::vector<Index> broken_faces(const Draft& draft);
     void merge_ends(Draft& draft, const Spacing& spacing) const;
     void add_samples(Draft& draft, const Spacing& spacing) const;
+    void relieve_crowded(Draft& draft);
     double count_of(const Draft& draft);
     double wanted_count() const {
         return static_cast<double>(options_.vertices ? *options_.vertices : options_.faces.value_or(0));
@@ -140,6 +107,8 @@ private:
         return static_cast<double>(count_vertices(mesh, mesh_.is_cut_open));
     }
     void search(double wanted);
+    void find_network(double wanted);
+    void trim(Draft& draft, double wanted);
     struct Attempt {
         Draft draft;
         CoarseMesh mesh;
@@ -305,6 +274,15 @@ void Remesher::add_samples(Draft& d, const Spacing& spacing) const {
     d.samples = triangulate_around(choose_samples(d.graph, d.network, d.faces, field_, spacing, rule), d.polygons);
 }
 
+/// Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
+void Remesher::relieve_crowded(Draft& d) {
+    for (int fans = 0; fans < 3; ++fans) {
+        const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
+        if (crowded.empty()) return;
+        d.polygons = fan_out(d.polygons, crowded);
+    }
+}
+
 Draft Remesher::draft(double error) {
     constexpr int patience = 4, most_rounds = 14, most_broken_rounds = 3;
     int broken_rounds = 0;
@@ -330,12 +308,7 @@ Draft Remesher::draft(double error) {
             d.filled =
                 fill_flat_faces(d.network, d.graph, d.faces, d.open, d.nodes, d.merged, 0.02 * given, d.polygons);
             add_samples(d, spacing);
-            // Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
-            for (int fans = 0; fans < 3; ++fans) {
-                const std::vector<Index> crowded = crowded_vertices(cut(d.polygons));
-                if (crowded.empty()) break;
-                d.polygons = fan_out(d.polygons, crowded);
-            }
+            relieve_crowded(d);
         }
         watch_.stage("arrangement");
         if (flaws.empty() && !control_.cancelled()) {
@@ -362,7 +335,7 @@ Draft Remesher::draft(double error) {
             for (const Index f : flaws.faces) d.flaws.push_back(d.graph.nodes[d.graph.tail(d.faces[f][0])].point);
             return d;
         }
-        caps_.refine(flaws, d.graph, d.faces, spacing);
+        caps_.refine(flaws, d.graph, d.faces, spacing, round >= 2);
     }
 }
 
@@ -374,10 +347,30 @@ double Remesher::count_of(const Draft& draft) {
         (options_.output == RemeshOutput::polygons ? draft.polygons : cut(draft.polygons)).polygon_count());
 }
 
-/// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps, then one family
-/// gets more lines for fewer of the other.
+/// A few vertices too many are those that matter least.
+void Remesher::trim(Draft& d, double wanted) {
+    for (int round = 0; round < 3; ++round) {
+        const double count = count_of(d), part = 1.0 - wanted / count;
+        if (count < wanted + 0.5 || part > most_trimmed) return;
+        const double vertices = static_cast<double>(d.polygons.points.size() - d.merged.size());
+        const auto merges = static_cast<std::size_t>(options_.faces ? std::ceil(part * vertices) : count - wanted);
+        append_merged(d.merged, coarsen(*tree_, arrangement_rule(d.error), merges, static_cast<Index>(d.nodes.size()),
+                                        d.polygons));
+        relieve_crowded(d);
+    }
+    watch_.stage("trimming");
+}
+
 void Remesher::search(double wanted) {
+    find_network(wanted);
+    if (best_ && best_->flaws.empty() && !control_.cancelled()) trim(*best_, wanted);
+}
+
+/// Counts jump where a closed line more or less fits: epsilon is bracketed, then the limit of gaps, then one family
+/// gets more lines for fewer of the other. Somewhat too many will do, see `trim`.
+void Remesher::find_network(double wanted) {
     double best_miss = 1e300;
+    const auto miss_of = [](double off) { return off > 0.0 ? 0.25 * off : -off; };
     int networks = 0;
     /// How far the count is off, as a logarithm; empty: near enough, or cancelled.
     const auto attempt = [&](double error) -> std::optional<double> {
@@ -388,16 +381,16 @@ void Remesher::search(double wanted) {
         ++networks;
         const double off = std::log(std::max(count_of(d), 1.0) / wanted);
         const bool whole = d.flaws.empty();
-        if (!best_ || (whole && std::abs(off) < best_miss)) {
-            best_miss = whole ? std::abs(off) : 1e300;
+        if (!best_ || (whole && miss_of(off) < best_miss)) {
+            best_miss = whole ? miss_of(off) : 1e300;
             best_.emplace(std::move(d));
         }
-        if (best_miss < (networks < 4 ? 0.025 : 0.045)) return std::nullopt;
+        if (best_miss < (networks < 4 ? 0.015 : 0.03)) return std::nullopt;
         return off;
     };
     trace_rule_ = {};
     balance_ = 1.0;
-    const double start = start_error(wanted);
+    const double start = start_error(1.02 * wanted);
     struct End {
         double knob = 0.0, off = 0.0;
     };
@@ -408,7 +401,7 @@ void Remesher::search(double wanted) {
         if (!off) return;
         (*off > 0.0 ? many : few) = End{std::log(error), *off};
         double step = *off;
-        if (last) step /= std::clamp((last->off - *off) / (std::log(error) - last->knob), 0.2, 1.5);
+        if (last) step /= std::clamp((last->off - *off) / (std::log(error) - last->knob), 0.5, 1.5);
         step = std::clamp(step, -1.2, 1.2);
         last = End{std::log(error), *off};
         if (many && few) {
@@ -715,10 +708,13 @@ void Remesher::finish_count() {
             network = drafted;
             kept.emplace(Attempt{std::move(*best_), std::move(mesh), result_.statistics});
         }
-        if (least < 0.045 || !is_mended || options_.subdivide > 0) break;
+        // An aim that was lowered for nothing may rise again.
+        if (least < 0.03 || (round == 0 && !is_mended) || options_.subdivide > 0) break;
         aim = std::log(drafted);
         (off > 0.0 ? many : few) = {aim, off};
-        aim -= std::clamp(off, -1.0, 1.0);
+        // The next network may need less of it.
+        const double most_step = round == 0 ? 0.1 : 1.0;
+        aim -= std::clamp(off, -most_step, most_step);
         if (many && few) {
             const double part = std::clamp((*many)[1] / ((*many)[1] - (*few)[1]), 0.2, 0.8);
             aim = (*many)[0] + part * ((*few)[0] - (*many)[0]);

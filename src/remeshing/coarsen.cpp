@@ -1,0 +1,314 @@
+// A greedy loop over contractions.
+//
+// A polygon's cost is the integral of (h - l)^2, where h is the surface's height over it, a quadric, and l the
+// linear function that is nearest to it: what placement can reach. Triangles cost something on top, quads shall stay.
+#include "remeshing/coarsen.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <queue>
+
+#include "core/vector3.h"
+
+namespace certa::remeshing {
+namespace {
+
+constexpr double odd_cost = 0.3;       ///< of a polygon with an odd number of corners, in costs of a mean one
+constexpr double least_cosine = 0.8;   ///< between the normals of a polygon before and after
+constexpr double most_reflex = 0.15;   ///< sine by which a corner may turn the other way
+constexpr std::size_t most_sides = 7;  ///< at one vertex
+
+/// Second derivatives of the height, in space.
+using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, yz, zx
+
+Tensor& add(Tensor& sum, const Point3& d, double k) {
+    const Tensor t{d.x * d.x, d.y * d.y, d.z * d.z, d.x * d.y, d.y * d.z, d.z * d.x};
+    for (std::size_t i = 0; i < 6; ++i) sum[i] += k * t[i];
+    return sum;
+}
+double height(const Tensor& t, const Point3& x) {
+    return 0.5 * (t[0] * x.x * x.x + t[1] * x.y * x.y + t[2] * x.z * x.z) + t[3] * x.x * x.y + t[4] * x.y * x.z +
+           t[5] * x.z * x.x;
+}
+
+Point3 unit(const Point3& v) {
+    const double length = norm(v);
+    return length > 0.0 ? (1.0 / length) * v : Point3{};
+}
+
+using Corners = std::vector<Point3>;
+
+Point3 mean_of(const Corners& corners) {
+    Point3 sum;
+    for (const Point3& p : corners) sum = sum + p;
+    return (1.0 / static_cast<double>(corners.size())) * sum;
+}
+/// Twice the area is its length.
+Point3 normal_of(const Corners& corners) {
+    Point3 sum;
+    for (std::size_t i = 1; i + 1 < corners.size(); ++i)
+        sum = sum + cross(corners[i] - corners[0], corners[i + 1] - corners[0]);
+    return sum;
+}
+
+/// Normal equations of a least-squares fit.
+template <std::size_t n>
+struct Fit {
+    std::array<std::array<double, n>, n> left{};
+    std::array<double, n> right{};
+    double squares = 0.0;  ///< of what is fitted; after `solve`, of what is left of it
+
+    void add(const std::array<double, n>& row, double value, double weight) {
+        for (std::size_t r = 0; r < n; ++r) {
+            right[r] += weight * value * row[r];
+            for (std::size_t c = 0; c < n; ++c) left[r][c] += weight * row[r] * row[c];
+        }
+        squares += weight * value * value;
+    }
+    /// By Gauss without pivots: the matrix is positive definite, but for directions that nothing is known of, which
+    /// get 0.
+    std::array<double, n> solve() {
+        constexpr double least = 1e-9;
+        std::array<double, n> scale{}, x{};
+        for (std::size_t c = 0; c < n; ++c) scale[c] = left[c][c];
+        for (std::size_t c = 0; c < n; ++c) {
+            if (!(left[c][c] > least * scale[c])) {
+                left[c][c] = 0.0;
+                continue;
+            }
+            for (std::size_t r = c + 1; r < n; ++r) {
+                const double part = left[r][c] / left[c][c];
+                for (std::size_t k = c; k < n; ++k) left[r][k] -= part * left[c][k];
+                right[r] -= part * right[c];
+            }
+            squares -= right[c] * right[c] / left[c][c];
+        }
+        for (std::size_t c = n; c-- > 0;) {
+            if (left[c][c] == 0.0) continue;
+            x[c] = right[c];
+            for (std::size_t k = c + 1; k < n; ++k) x[c] -= left[c][k] * x[k];
+            x[c] /= left[c][c];
+        }
+        return x;
+    }
+};
+
+/// A frame in a polygon's plane.
+struct Frame {
+    explicit Frame(const Corners& corners) : middle(mean_of(corners)), normal(unit(normal_of(corners))) {
+        const Point3 first = corners[0] - middle;
+        axis = unit(first - dot(first, normal) * normal);
+        other = cross(normal, axis);
+    }
+    Point3 middle, normal, axis, other;
+};
+
+/// The residual of a least-squares fit of 1, u and v to the height, integrated over the triangles around the middle.
+double cost_of(const Corners& corners, const Tensor& tensor) {
+    // Exact to fourth order.
+    constexpr double near = 0.091576213509771, far = 0.445948490915965;
+    constexpr double of_near = 0.109951743655322, of_far = 0.223381589678011;
+    const Frame frame(corners);
+    Fit<3> fit;
+    for (std::size_t i = 0; i < corners.size(); ++i) {
+        const Point3 a = corners[i] - frame.middle, b = corners[(i + 1) % corners.size()] - frame.middle;
+        const double area = 0.5 * norm(cross(a, b));
+        for (int k = 0; k < 6; ++k) {
+            const double s = k < 3 ? near : far, rest = 1.0 - 2.0 * s;
+            const Point3 x = (k % 3 == 1 ? rest : s) * a + (k % 3 == 2 ? rest : s) * b;
+            fit.add({1.0, dot(x, frame.axis), dot(x, frame.other)}, height(tensor, x),
+                    area * (k < 3 ? of_near : of_far));
+        }
+    }
+    fit.solve();
+    return std::max(fit.squares, 0.0);
+}
+
+struct Candidate {
+    double cost = 0.0;
+    Index v = no_index, into = no_index;
+    std::uint32_t stamp = 0;
+    Point3 place;                                                    ///< of what is left
+    friend bool operator<(const Candidate& l, const Candidate& r) {  // the cheapest first
+        if (l.cost != r.cost) return l.cost > r.cost;
+        return l.v != r.v ? l.v > r.v : l.into > r.into;
+    }
+};
+
+class Coarsener {
+public:
+    Coarsener(const core::TriangleTree& tree, const ArrangementRule& rule, Index most, CoarseMesh& mesh)
+        : tree_(tree), most_(most), mesh_(mesh), contraction_(mesh, rule) {
+        stamps_.assign(mesh.points.size(), 0);
+        double sum = 0.0;
+        for (Index q = 0; q < mesh.polygon_count(); ++q) {
+            const Corners corners = corners_of(q, no_index, no_index, {});
+            tensors_.push_back(tensor_at(q));
+            costs_.push_back(cost_of(corners, tensors_.back()));
+            sum += costs_.back();
+        }
+        mean_cost_ = sum / static_cast<double>(std::max<std::size_t>(mesh.polygon_count(), 1));
+    }
+
+    std::vector<MergedVertex> run(std::size_t count) {
+        for (Index q = 0; q < contraction_.polygon_count(); ++q) push_all(q);
+        while (count > 0 && !queue_.empty()) {
+            const Candidate next = queue_.top();
+            queue_.pop();
+            if (next.stamp != stamps_[next.v] + stamps_[next.into] || !contraction_.merge(next.v, next.into)) continue;
+            --count;
+            if (mesh_.kinds[next.into] == VertexKind::smooth) {
+                const core::NearestPoint nearest = tree_.find_nearest(next.place);
+                mesh_.points[next.into] = nearest.point;
+                mesh_.places[next.into] = {nearest.triangle, nearest.weights};
+            }
+            renew(next.into);
+        }
+        return contraction_.write_back();
+    }
+
+private:
+    /// Least squares of a quadric over points of the surface below and, but at features, around the polygon.
+    Tensor tensor_at(Index q) const {
+        const Corners corners = corners_of(q, no_index, no_index, {});
+        const auto& ring = contraction_.ring(q);
+        const bool is_inside =
+            std::all_of(ring.begin(), ring.end(), [&](Index v) { return mesh_.kinds[v] == VertexKind::smooth; });
+        const Frame frame(corners);
+        const double size = norm(corners[0] - frame.middle);
+        Fit<6> fit;
+        const auto add_point = [&](const Point3& p) {
+            const Point3 x = (1.0 / size) * (tree_.find_nearest(p).point - frame.middle);
+            const double u = dot(x, frame.axis), v = dot(x, frame.other);
+            fit.add({1.0, u, v, 0.5 * u * u, u * v, 0.5 * v * v}, dot(x, frame.normal), 1.0);
+        };
+        add_point(frame.middle);
+        for (std::size_t i = 0; i < corners.size(); ++i) {
+            const Point3 side = 0.5 * (corners[i] + corners[(i + 1) % corners.size()]);
+            for (const double s : {0.5, 1.0, 1.4}) {
+                if (s > 1.0 && !is_inside) continue;
+                add_point(frame.middle + s * (corners[i] - frame.middle));
+                add_point(frame.middle + s * (side - frame.middle));
+            }
+        }
+        const auto x = fit.solve();
+        Tensor sum{};
+        add(sum, frame.axis, (x[3] - x[4]) / size);
+        add(sum, frame.other, (x[5] - x[4]) / size);
+        return add(sum, frame.axis + frame.other, x[4] / size);
+    }
+
+    /// With v and `into` at `place`, once.
+    Corners corners_of(Index q, Index v, Index into, const Point3& place) const {
+        Corners corners;
+        const auto& ring = contraction_.ring(q);
+        const bool has_both = v != no_index && std::find(ring.begin(), ring.end(), into) != ring.end();
+        for (const Index x : ring) {
+            if (x == v && has_both) continue;
+            corners.push_back(x == v || x == into ? place : mesh_.points[x]);
+        }
+        return corners;
+    }
+
+    void push(Index v, Index into) {
+        if (v >= most_ || into >= most_) return;
+        const std::vector<Index> changed = contraction_.changed_by(v, into);
+        if (changed.empty()) return;
+        const bool is_free = mesh_.kinds[v] == VertexKind::smooth && mesh_.kinds[into] == VertexKind::smooth;
+        Candidate candidate{0.0, v, into, stamps_[v] + stamps_[into], mesh_.points[into]};
+        if (is_free) candidate.place = 0.5 * (mesh_.points[v] + mesh_.points[into]);
+        std::vector<Index> all = changed;
+        for (const Index q : contraction_.around(v)) {
+            candidate.cost -= paid(contraction_.ring(q).size(), costs_[q]);
+        }
+        for (const Index q : contraction_.around(into)) {
+            const auto& around = contraction_.around(v);
+            if (std::find(around.begin(), around.end(), q) != around.end()) continue;
+            candidate.cost -= paid(contraction_.ring(q).size(), costs_[q]);
+            all.push_back(q);
+        }
+        if (contraction_.around(v).size() + contraction_.around(into).size() > most_sides + 2) return;
+        for (const Index q : all) {
+            const Corners after = corners_of(q, v, into, candidate.place);
+            if (!is_sound(corners_of(q, no_index, no_index, {}), after)) return;
+            candidate.cost += paid(after.size(), cost_of(after, tensors_[q]));
+        }
+        if (mesh_.kinds[v] != VertexKind::smooth) candidate.cost += curve_cost(v, into);
+        queue_.push(candidate);
+    }
+    double paid(std::size_t corners, double cost) const {
+        return cost + (corners % 2 == 1 ? odd_cost * mean_cost_ : 0.0);
+    }
+    /// What a curve's new side is off, over a strip as wide as a polygon.
+    double curve_cost(Index v, Index into) const {
+        double sum = 0.0;
+        for (const Index x : contraction_.neighbours(v)) {
+            if (x == into || !contraction_.is_feature_side(v, x)) continue;
+            const Point3 &a = mesh_.points[into], &b = mesh_.points[x], &p = mesh_.points[v];
+            const double length = distance(a, b), off = length > 0.0 ? norm(cross(b - a, p - a)) / length : 0.0;
+            sum += off * off * length * length;
+        }
+        return sum;
+    }
+    static bool is_sound(const Corners& before, const Corners& after) {
+        const Point3 normal = unit(normal_of(after));
+        if (dot(normal, unit(normal_of(before))) < least_cosine) return false;
+        for (std::size_t i = 0; i < after.size(); ++i) {
+            const Point3 in = unit(after[i] - after[(i + after.size() - 1) % after.size()]);
+            const Point3 out = unit(after[(i + 1) % after.size()] - after[i]);
+            if (dot(cross(in, out), normal) < -most_reflex || dot(in, out) < -0.9) return false;
+        }
+        return true;
+    }
+
+    void push_all(Index q) {
+        const std::vector<Index> ring = contraction_.ring(q);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            push_both(ring[i], ring[(i + 1) % ring.size()]);
+            if (ring.size() == 4 && i < 2) push_both(ring[i], ring[i + 2]);
+        }
+    }
+    /// Of two that may both move, one way will do.
+    void push_both(Index a, Index b) {
+        const bool is_free = mesh_.kinds[a] == VertexKind::smooth && mesh_.kinds[b] == VertexKind::smooth;
+        push(std::max(a, b), std::min(a, b));
+        if (!is_free) push(std::min(a, b), std::max(a, b));
+    }
+    /// All that has to do with the polygons around a vertex.
+    void renew(Index v) {
+        std::vector<Index> near, far;
+        for (const Index q : contraction_.around(v)) {
+            costs_[q] = cost_of(corners_of(q, no_index, no_index, {}), tensors_[q]);
+            near.insert(near.end(), contraction_.ring(q).begin(), contraction_.ring(q).end());
+        }
+        std::sort(near.begin(), near.end());
+        near.erase(std::unique(near.begin(), near.end()), near.end());
+        for (const Index x : near) {
+            ++stamps_[x];
+            far.insert(far.end(), contraction_.around(x).begin(), contraction_.around(x).end());
+        }
+        std::sort(far.begin(), far.end());
+        far.erase(std::unique(far.begin(), far.end()), far.end());
+        for (const Index q : far) push_all(q);
+    }
+
+    const core::TriangleTree& tree_;
+    const Index most_;
+    CoarseMesh& mesh_;
+    Contraction contraction_;
+    std::vector<Tensor> tensors_;  ///< per polygon, as it was at first
+    std::vector<double> costs_;    ///< per polygon
+    double mean_cost_ = 0.0;
+    std::vector<std::uint32_t> stamps_;  ///< per vertex: how often what is around it has changed
+    std::priority_queue<Candidate> queue_;
+};
+
+}  // namespace
+
+std::vector<MergedVertex> coarsen(const core::TriangleTree& tree, const ArrangementRule& rule, std::size_t count,
+                                  Index most, CoarseMesh& mesh) {
+    return Coarsener(tree, rule, most, mesh).run(count);
+}
+
+}  // namespace certa::remeshing
