@@ -1,13 +1,16 @@
 // A greedy loop over contractions.
 //
-// A polygon's cost is the integral of (h - l)^2, where h is the surface's height over it, a quadric, and l the
-// linear function that is nearest to it: what placement can reach. Triangles cost something on top, quads shall stay.
+// A polygon's cost is the integral of (h - l)^2, where h is the surface's height over it and l the linear function that
+// is nearest to it: what placement can reach. By quadrics, fitted once, the cheapest contractions are found; those at
+// the front of the queue are measured on the surface itself, where peaks count more, before they are done. Triangles
+// cost something on top, quads shall stay.
 #include "remeshing/coarsen.h"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <queue>
+#include <tuple>
 
 #include "core/vector3.h"
 
@@ -105,11 +108,18 @@ struct Frame {
 };
 
 /// The residual of a least-squares fit of 1, u and v to the height, integrated over the triangles around the middle.
-double cost_of(const Corners& corners, const Tensor& tensor) {
+/// `height_at` is told points relative to the middle; squares of residuals above `peak` count up to twice and more.
+template <class Height>
+double cost_of(const Corners& corners, double peak, const Height& height_at) {
     // Exact to fourth order.
     constexpr double near = 0.091576213509771, far = 0.445948490915965;
     constexpr double of_near = 0.109951743655322, of_far = 0.223381589678011;
+    struct Sample {
+        double u = 0.0, v = 0.0, height = 0.0, area = 0.0;
+    };
     const Frame frame(corners);
+    std::vector<Sample> samples;
+    samples.reserve(6 * corners.size());
     Fit<3> fit;
     for (std::size_t i = 0; i < corners.size(); ++i) {
         const Point3 a = corners[i] - frame.middle, b = corners[(i + 1) % corners.size()] - frame.middle;
@@ -117,17 +127,29 @@ double cost_of(const Corners& corners, const Tensor& tensor) {
         for (int k = 0; k < 6; ++k) {
             const double s = k < 3 ? near : far, rest = 1.0 - 2.0 * s;
             const Point3 x = (k % 3 == 1 ? rest : s) * a + (k % 3 == 2 ? rest : s) * b;
-            fit.add({1.0, dot(x, frame.axis), dot(x, frame.other)}, height(tensor, x),
-                    area * (k < 3 ? of_near : of_far));
+            samples.push_back(
+                {dot(x, frame.axis), dot(x, frame.other), height_at(frame, x), area * (k < 3 ? of_near : of_far)});
+            const Sample& sample = samples.back();
+            fit.add({1.0, sample.u, sample.v}, sample.height, sample.area);
         }
     }
-    fit.solve();
-    return std::max(fit.squares, 0.0);
+    const auto plane = fit.solve();
+    if (peak <= 0.0) return std::max(fit.squares, 0.0);
+    double cost = 0.0;
+    for (const Sample& sample : samples) {
+        const double off = sample.height - plane[0] - plane[1] * sample.u - plane[2] * sample.v;
+        cost += sample.area * off * off * (1.0 + off * off / peak);
+    }
+    return cost;
+}
+double estimate(const Corners& corners, const Tensor& tensor) {
+    return cost_of(corners, 0.0, [&](const Frame&, const Point3& x) { return height(tensor, x); });
 }
 
 struct Candidate {
     double cost = 0.0;
     Index v = no_index, into = no_index;
+    bool is_measured = false;
     std::uint32_t stamp = 0;
     Point3 place;                                                    ///< of what is left
     friend bool operator<(const Candidate& l, const Candidate& r) {  // the cheapest first
@@ -141,22 +163,35 @@ public:
     Coarsener(const core::TriangleTree& tree, const ArrangementRule& rule, Index most, CoarseMesh& mesh)
         : tree_(tree), most_(most), mesh_(mesh), contraction_(mesh, rule) {
         stamps_.assign(mesh.points.size(), 0);
-        double sum = 0.0;
+        double area = 0.0, squares = 0.0;
         for (Index q = 0; q < mesh.polygon_count(); ++q) {
-            const Corners corners = corners_of(q, no_index, no_index, {});
+            const Corners corners = corners_of(q);
             tensors_.push_back(tensor_at(q));
-            costs_.push_back(cost_of(corners, tensors_.back()));
-            sum += costs_.back();
+            costs_[0].push_back(estimate(corners, tensors_.back()));
+            costs_[1].push_back(measure(corners, 0.0));
+            area += 0.5 * norm(normal_of(corners));
+            mean_costs_[0] += costs_[0].back() / static_cast<double>(mesh.polygon_count());
+            squares += costs_[1].back();
         }
-        mean_cost_ = sum / static_cast<double>(std::max<std::size_t>(mesh.polygon_count(), 1));
+        peak_ = 4.0 * squares / area;
+        for (Index q = 0; q < mesh.polygon_count(); ++q) {
+            costs_[1][q] = measure(corners_of(q), peak_);
+            mean_costs_[1] += costs_[1][q] / static_cast<double>(mesh.polygon_count());
+        }
     }
 
     std::vector<MergedVertex> run(std::size_t count) {
         for (Index q = 0; q < contraction_.polygon_count(); ++q) push_all(q);
         while (count > 0 && !queue_.empty()) {
-            const Candidate next = queue_.top();
+            Candidate next = queue_.top();
             queue_.pop();
-            if (next.stamp != stamps_[next.v] + stamps_[next.into] || !contraction_.merge(next.v, next.into)) continue;
+            if (next.stamp != stamps_[next.v] + stamps_[next.into]) continue;
+            if (!next.is_measured) {
+                next.is_measured = true;
+                if (find_cost(next)) queue_.push(next);
+                continue;
+            }
+            if (!contraction_.merge(next.v, next.into)) continue;
             --count;
             if (mesh_.kinds[next.into] == VertexKind::smooth) {
                 const core::NearestPoint nearest = tree_.find_nearest(next.place);
@@ -171,7 +206,7 @@ public:
 private:
     /// Least squares of a quadric over points of the surface below and, but at features, around the polygon.
     Tensor tensor_at(Index q) const {
-        const Corners corners = corners_of(q, no_index, no_index, {});
+        const Corners corners = corners_of(q);
         const auto& ring = contraction_.ring(q);
         const bool is_inside =
             std::all_of(ring.begin(), ring.end(), [&](Index v) { return mesh_.kinds[v] == VertexKind::smooth; });
@@ -211,34 +246,42 @@ private:
         return corners;
     }
 
+    Corners corners_of(Index q) const { return corners_of(q, no_index, no_index, {}); }
+    /// On the surface itself.
+    double measure(const Corners& corners, double peak) const {
+        return cost_of(corners, peak, [&](const Frame& frame, const Point3& x) {
+            return dot(tree_.find_nearest(frame.middle + x).point - frame.middle, frame.normal);
+        });
+    }
+
     void push(Index v, Index into) {
         if (v >= most_ || into >= most_) return;
-        const std::vector<Index> changed = contraction_.changed_by(v, into);
-        if (changed.empty()) return;
         const bool is_free = mesh_.kinds[v] == VertexKind::smooth && mesh_.kinds[into] == VertexKind::smooth;
-        Candidate candidate{0.0, v, into, stamps_[v] + stamps_[into], mesh_.points[into]};
+        Candidate candidate{0.0, v, into, false, stamps_[v] + stamps_[into], mesh_.points[into]};
         if (is_free) candidate.place = 0.5 * (mesh_.points[v] + mesh_.points[into]);
-        std::vector<Index> all = changed;
-        for (const Index q : contraction_.around(v)) {
-            candidate.cost -= paid(contraction_.ring(q).size(), costs_[q]);
-        }
-        for (const Index q : contraction_.around(into)) {
-            const auto& around = contraction_.around(v);
-            if (std::find(around.begin(), around.end(), q) != around.end()) continue;
-            candidate.cost -= paid(contraction_.ring(q).size(), costs_[q]);
-            all.push_back(q);
-        }
-        if (contraction_.around(v).size() + contraction_.around(into).size() > most_sides + 2) return;
-        for (const Index q : all) {
-            const Corners after = corners_of(q, v, into, candidate.place);
-            if (!is_sound(corners_of(q, no_index, no_index, {}), after)) return;
-            candidate.cost += paid(after.size(), cost_of(after, tensors_[q]));
-        }
-        if (mesh_.kinds[v] != VertexKind::smooth) candidate.cost += curve_cost(v, into);
-        queue_.push(candidate);
+        if (find_cost(candidate)) queue_.push(candidate);
     }
-    double paid(std::size_t corners, double cost) const {
-        return cost + (corners % 2 == 1 ? odd_cost * mean_cost_ : 0.0);
+    /// False: it must not be.
+    bool find_cost(Candidate& candidate) const {
+        const auto& [v, into] = std::tie(candidate.v, candidate.into);
+        const auto &of_v = contraction_.around(v), &of_into = contraction_.around(into);
+        if (of_v.size() + of_into.size() > most_sides + 2) return false;
+        std::vector<Index> changed = contraction_.changed_by(v, into), before = of_v;
+        if (changed.empty()) return false;
+        for (const Index q : of_into)
+            if (std::find(of_v.begin(), of_v.end(), q) == of_v.end()) changed.push_back(q), before.push_back(q);
+        const std::size_t kind = candidate.is_measured ? 1 : 0;
+        const double of_odd = odd_cost * mean_costs_[kind];
+        candidate.cost = mesh_.kinds[v] != VertexKind::smooth ? curve_cost(v, into) : 0.0;
+        for (const Index q : before)
+            candidate.cost -= costs_[kind][q] + (contraction_.ring(q).size() % 2 == 1 ? of_odd : 0.0);
+        for (const Index q : changed) {
+            const Corners after = corners_of(q, v, into, candidate.place);
+            if (!is_sound(corners_of(q), after)) return false;
+            candidate.cost += candidate.is_measured ? measure(after, peak_) : estimate(after, tensors_[q]);
+            candidate.cost += after.size() % 2 == 1 ? of_odd : 0.0;
+        }
+        return true;
     }
     /// What a curve's new side is off, over a strip as wide as a polygon.
     double curve_cost(Index v, Index into) const {
@@ -279,7 +322,8 @@ private:
     void renew(Index v) {
         std::vector<Index> near, far;
         for (const Index q : contraction_.around(v)) {
-            costs_[q] = cost_of(corners_of(q, no_index, no_index, {}), tensors_[q]);
+            costs_[0][q] = estimate(corners_of(q), tensors_[q]);
+            costs_[1][q] = measure(corners_of(q), peak_);
             near.insert(near.end(), contraction_.ring(q).begin(), contraction_.ring(q).end());
         }
         std::sort(near.begin(), near.end());
@@ -297,9 +341,10 @@ private:
     const Index most_;
     CoarseMesh& mesh_;
     Contraction contraction_;
-    std::vector<Tensor> tensors_;  ///< per polygon, as it was at first
-    std::vector<double> costs_;    ///< per polygon
-    double mean_cost_ = 0.0;
+    std::vector<Tensor> tensors_;               ///< per polygon, as it was at first
+    std::array<std::vector<double>, 2> costs_;  ///< per polygon: estimated, measured
+    std::array<double, 2> mean_costs_{};
+    double peak_ = 0.0;
     std::vector<std::uint32_t> stamps_;  ///< per vertex: how often what is around it has changed
     std::priority_queue<Candidate> queue_;
 };

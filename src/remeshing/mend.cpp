@@ -93,6 +93,10 @@ public:
         report.regions = regions_.size();
         for (const Region& region : regions_) report.faces += region.faces.size(), report.triangles += region.triangles;
         for (std::size_t f = 0; f < in_set_.size(); ++f) report.cut_faces += in_set_[f] == 0 ? is_cut_[f] : 0;
+        std::vector<Index> own = result_.corners;
+        std::erase_if(own, [&](Index v) { return v >= base_.points.size(); });
+        std::sort(own.begin(), own.end());
+        report.first_added = static_cast<Index>(std::unique(own.begin(), own.end()) - own.begin());
         leave_out_unused(result_);
         out_ = std::move(result_);
         return report;

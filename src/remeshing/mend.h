@@ -20,7 +20,8 @@ struct MendingRule {
 struct MendingReport {
     std::size_t rounds = 0, regions = 0, faces = 0, triangles = 0;  ///< faces of the graph, and what replaces them
     std::size_t split_quads = 0, cut_faces = 0;
-    std::vector<Point3> left;  ///< where something is still broken: the input itself is
+    Index first_added = no_index;  ///< vertex: those before are the polygons' own
+    std::vector<Point3> left;      ///< where something is still broken: the input itself is
 };
 
 /// Replaces polygons that turn away, meet others or miss creases (and, on demand, that are too far) by thinned-out

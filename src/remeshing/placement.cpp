@@ -136,7 +136,9 @@ private:
         return c < curves_.size() && !curves_[c].tree->empty() ? &curves_[c] : nullptr;
     }
     /// Vertices bound to a curve that is not there stay, as corners do.
-    bool is_fixed(Index v) const { return mesh_.kinds[v] != VertexKind::smooth && curve_of(v) == nullptr; }
+    bool is_fixed(Index v) const {
+        return v >= options_.fixed_from || (mesh_.kinds[v] != VertexKind::smooth && curve_of(v) == nullptr);
+    }
 
     Point3 tangent_at(const Curve& curve, const Point3& p) const {
         const Index s = curve.tree->find_nearest(p).triangle;
@@ -416,11 +418,11 @@ private:
             for (const std::size_t i : {0u, 3u, 5u}) diagonal_[v][i] += spring + 1e-9 * masses[v] + 1e-30;
             add_outer(diagonal_[v], -spring, normal);
             preconditioner_[v] = inverse(diagonal_[v]);
-            if (const Curve* curve = curve_of(static_cast<Index>(v))) {
+            if (is_fixed(static_cast<Index>(v))) {
+                freedom_[v] = 0;
+            } else if (const Curve* curve = curve_of(static_cast<Index>(v))) {
                 freedom_[v] = 1;
                 tangents_[v] = tangent_at(*curve, mesh_.points[v]);
-            } else if (is_fixed(static_cast<Index>(v))) {
-                freedom_[v] = 0;
             }
         }
     }
@@ -458,7 +460,8 @@ private:
 
     void return_to_curves() {
         for (Index v = 0; v < mesh_.points.size(); ++v)
-            if (const Curve* curve = curve_of(v)) mesh_.points[v] = curve->tree->find_nearest(mesh_.points[v]).point;
+            if (const Curve* curve = curve_of(v); curve != nullptr && !is_fixed(v))
+                mesh_.points[v] = curve->tree->find_nearest(mesh_.points[v]).point;
     }
 
     /// Halves the step of the corners of a polygon of which a triangle has turned away from the input; then undoes it.
@@ -551,7 +554,7 @@ private:
                 counts[t[i]] += 2.0;
             }
         for (Index v = 0; v < is_marked.size(); ++v) {
-            if (is_marked[v] == 0 || mesh_.kinds[v] != VertexKind::smooth) continue;
+            if (is_marked[v] == 0 || mesh_.kinds[v] != VertexKind::smooth || is_fixed(v)) continue;
             const Point3 middle = 0.5 * (mesh_.points[v] + (1.0 / counts[v]) * sums[v]);
             mesh_.points[v] = tree_->find_nearest(middle).point;
         }

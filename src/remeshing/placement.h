@@ -16,6 +16,7 @@ struct PlacementOptions {
     double anchor = 0.001;           ///< stiffness against sliding along the surface, relative to that across it
     std::uint32_t samples_per_triangle = 9;
     std::uint64_t seed = 1;
+    Index fixed_from = no_index;  ///< vertices from this one on stay
 };
 
 struct PlacementReport {

@@ -30,6 +30,7 @@
 #include "remeshing/nearer_origin.h"
 #include "remeshing/pair_triangles.h"
 #include "remeshing/place_and_cut.h"
+#include "remeshing/place_around.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
 #include "remeshing/rescue.h"
@@ -650,6 +651,10 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
     s.mended_regions = report.regions;
     s.mended_triangles = report.triangles;
     s.cut_faces = report.cut_faces;
+    if (options_.placement && error == 0.0 && report.regions > 0 && report.left.empty())
+        place_around(
+            mesh_, judge, report.first_added, [&](CoarseMesh& m, const PlacementOptions& how) { return place(m, how); },
+            [&](CoarseMesh& m) { return judge_input(m, judge).polygons; }, mesh);
     rescue_components(best_->layout(), judge, {mending_rule(error).tolerance, report.left}, mesh, control_);
     if (options_.subdivide > 0) {
         SubdivisionReport subdivision;
