@@ -17,10 +17,11 @@
 namespace certa::remeshing {
 namespace {
 
-constexpr double odd_cost = 0.3;       ///< of a polygon with an odd number of corners, in costs of a mean one
-constexpr double least_cosine = 0.8;   ///< between the normals of a polygon before and after
-constexpr double most_reflex = 0.15;   ///< sine by which a corner may turn the other way
-constexpr std::size_t most_sides = 7;  ///< at one vertex
+constexpr double odd_cost = 0.3;        ///< of a polygon with an odd number of corners, in costs of a mean one
+constexpr double least_cosine = 0.8;    ///< between the normals of a polygon before and after
+constexpr double most_reflex = 0.15;    ///< sine by which a corner may turn the other way
+constexpr double most_pointed = 0.995;  ///< cosine of the least angle of a corner
+constexpr std::size_t most_sides = 7;   ///< at one vertex
 
 /// Second derivatives of the height, in space.
 using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, yz, zx
@@ -300,7 +301,7 @@ private:
         for (std::size_t i = 0; i < after.size(); ++i) {
             const Point3 in = unit(after[i] - after[(i + after.size() - 1) % after.size()]);
             const Point3 out = unit(after[(i + 1) % after.size()] - after[i]);
-            if (dot(cross(in, out), normal) < -most_reflex || dot(in, out) < -0.9) return false;
+            if (dot(cross(in, out), normal) < -most_reflex || dot(in, out) < -most_pointed) return false;
         }
         return true;
     }

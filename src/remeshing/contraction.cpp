@@ -119,9 +119,10 @@ std::optional<Contraction::CurveSide> Contraction::join_sides(Index v, Index int
     return joined;
 }
 
-/// The middle of four polygons or more.
-bool Contraction::may_lose_polygon(Index v) const {
-    return mesh_.kinds[v] == VertexKind::smooth && around_[v].size() >= 4;
+/// Whether a polygon at x may go whose side from v to x becomes one with another: the middle of four polygons or more,
+/// and on features what has a polygon beyond that side.
+bool Contraction::may_lose_polygon(Index x, Index v) const {
+    return mesh_.kinds[x] == VertexKind::smooth ? around_[x].size() >= 4 : !is_feature_side(x, v);
 }
 
 bool Contraction::may_merge_side(Index v, Index into) const {
@@ -135,7 +136,7 @@ bool Contraction::may_merge_side(Index v, Index into) const {
         if (!is_side) return false;
         if (ring.size() > 3) continue;
         ++triangles;
-        if (!may_lose_polygon(ring[0] + ring[1] + ring[2] - v - into)) return false;
+        if (!may_lose_polygon(ring[0] + ring[1] + ring[2] - v - into, v)) return false;
     }
     const std::vector<Index> of_v = neighbours(v), of_into = neighbours(into);
     const auto common = std::count_if(of_v.begin(), of_v.end(),
@@ -155,7 +156,8 @@ Index Contraction::quad_between(Index v, Index into) const {
     if (quad == no_index) return no_index;
     const auto& ring = rings_[quad];
     const auto at = static_cast<std::size_t>(std::find(ring.begin(), ring.end(), v) - ring.begin());
-    if (ring[(at + 2) % 4] != into || !may_lose_polygon(ring[(at + 1) % 4]) || !may_lose_polygon(ring[(at + 3) % 4]))
+    if (ring[(at + 2) % 4] != into || !may_lose_polygon(ring[(at + 1) % 4], v) ||
+        !may_lose_polygon(ring[(at + 3) % 4], v))
         return no_index;
     const std::vector<Index> of_v = neighbours(v), of_into = neighbours(into);
     const auto common = std::count_if(of_v.begin(), of_v.end(),

@@ -52,7 +52,7 @@ private:
     std::optional<CurveSide> join_sides(Index v, Index into) const;
     bool may_merge_side(Index v, Index into) const;
     Index quad_between(Index v, Index into) const;
-    bool may_lose_polygon(Index v) const;
+    bool may_lose_polygon(Index x, Index v) const;
     void drop(Index q);
 
     CoarseMesh& mesh_;

@@ -45,7 +45,7 @@ namespace certa {
 namespace remeshing {
 namespace {
 
-constexpr double most_trimmed = 0.12;  ///< of what a network has, in vertices or faces
+constexpr double most_trimmed = 0.25;  ///< of what a network has, in vertices or faces
 
 /// The fewest digits that mean this number.
 std::string text_of(double value) {
