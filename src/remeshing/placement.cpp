@@ -20,6 +20,7 @@
 #include "core/triangle_tree.h"
 #include "core/vector3.h"
 #include "remeshing/triangulate.h"
+#include "remeshing/walker.h"
 
 namespace certa::remeshing {
 namespace {
@@ -70,6 +71,7 @@ public:
         for (Point3& p : mesh_.points) p = scale_ * (p - origin_);
         initial_ = mesh_.points;
         tree_ = std::make_unique<TriangleTree>(input_.positions, input_.triangles);
+        walker_ = std::make_unique<Walker>(input_.positions, input_.triangles);
         for (const Triangle& t : input_.triangles) {
             const Point3 &a = position(t[0]), &b = position(t[1]), &c = position(t[2]);
             const Point3 area = cross(b - a, c - a);
@@ -212,6 +214,14 @@ private:
         return samples;
     }
 
+    /// What was nearest before, and its neighbours; where they are not near, or never were, whatever is.
+    NearestPoint find_near(const Point3& x, Index hint) const {
+        constexpr double near = 3.0;  // root mean squares
+        if (may_walk_ && hint != no_index)
+            if (const auto found = walker_->find(x, hint); found && found->squared_distance < near * near * rms_ * rms_)
+                return *found;
+        return tree_->find_nearest(x, hint);
+    }
     void pair_coarse_samples() {
         const std::size_t per_triangle = lattice_.size();
         double area = 0.0;
@@ -229,7 +239,7 @@ private:
                     pair.w = lattice_[s].w;
                     const Point3 x = pair.w[0] * mesh_.points[c[0]] + pair.w[1] * mesh_.points[c[1]] +
                                      pair.w[2] * mesh_.points[c[2]];
-                    const NearestPoint nearest = tree_->find_nearest(x, hint);
+                    const NearestPoint nearest = find_near(x, hint);
                     hint = nearest.triangle;
                     fill(pair, x, nearest.point, std::sqrt(nearest.squared_distance), normals_[hint]);
                     pair.weight *= 0.5 * coarse_areas_[t] / area * lattice_[s].weight;
@@ -284,6 +294,7 @@ private:
             coarse_normals_.push_back(unit(area));
         }
         pair_coarse_samples();
+        may_walk_ = true;
         pair_input_samples();
         rms_ = power_mean(2.0);
         largest_ = 0.0;
@@ -575,6 +586,8 @@ private:
     Point3 origin_;
     double scale_ = 1.0;
     std::unique_ptr<TriangleTree> tree_;
+    std::unique_ptr<Walker> walker_;
+    bool may_walk_ = false;  // after the first search
     std::vector<double> areas_;
     std::vector<Point3> normals_;
     std::vector<Curve> curves_;

@@ -175,10 +175,13 @@ double Remesher::start_error(double wanted) {
     constexpr double share = 0.68;  // of vertices expected where lines are as far apart as they may: gaps are narrower
     caps_.expect(wanted);
     double error = 4e-3 * mesh_.diagonal;
-    for (int round = 0; round < 4; ++round)
-        error *= std::clamp(expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_.at(error))) /
-                                (share * wanted),
-                            0.05, 20.0);
+    for (int round = 0; round < 4; ++round) {
+        const double expected =
+            expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_.at(error))) /
+            (share * wanted);
+        error *= std::clamp(expected, 0.05, 20.0);
+        if (std::abs(expected - 1.0) < 0.01) break;
+    }
     return caps_.given(error);
 }
 

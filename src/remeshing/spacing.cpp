@@ -15,26 +15,32 @@ namespace {
 void limit_growth(const WorkMesh& mesh, std::vector<double>& size, double growth) {
     using Entry = std::pair<double, Index>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    for (Index w = 0; w < size.size(); ++w) queue.push({size[w], w});
-    while (!queue.empty()) {
-        const Entry next = queue.top();
-        const Index w = next.second;
-        queue.pop();
-        if (next.first > size[w]) continue;
-        const auto relax = [&](Index other, Index edge) {
-            const double reached = size[w] + growth * mesh.lengths[edge];
-            if (reached < size[other]) {
-                size[other] = reached;
-                queue.push({reached, other});
-            }
-        };
+    /// What the neighbours of a wedge are allowed by it.
+    const auto for_neighbours = [&](Index w, const auto& visit) {
+        const auto see = [&](Index other, Index edge) { visit(other, size[w] + growth * mesh.lengths[edge]); };
         Index c = mesh.wedge_first[w];
         const Index first = c;
         do {
-            relax(mesh.wedges[next_of(c)], mesh.edges[c]);
-            relax(mesh.wedges[previous_of(c)], mesh.edges[previous_of(c)]);
+            see(mesh.wedges[next_of(c)], mesh.edges[c]);
+            see(mesh.wedges[previous_of(c)], mesh.edges[previous_of(c)]);
             c = mesh.next_corner(c);
         } while (c != no_index && c != first);
+    };
+    // Most wedges limit nobody to begin with.
+    for (Index w = 0; w < size.size(); ++w) {
+        bool limits = false;
+        for_neighbours(w, [&](Index other, double reached) { limits = limits || reached < size[other]; });
+        if (limits) queue.push({size[w], w});
+    }
+    while (!queue.empty()) {
+        const auto [value, w] = queue.top();
+        queue.pop();
+        if (value > size[w]) continue;
+        for_neighbours(w, [&](Index other, double reached) {
+            if (!(reached < size[other])) return;
+            size[other] = reached;
+            queue.push({reached, other});
+        });
     }
 }
 
