@@ -1,14 +1,16 @@
 #!/usr/bin/env python3
 """Remeshes every clean model of a folder at several vertex counts, and prints one line for each.
 
-    remesh_sweep.py CERTA MODELS [--counts 500,1500,5000,default] [--timeout SECONDS] [--names NAME...]
+    remesh_sweep.py CERTA MODELS [--counts 500,1500,5000,default] [--subdivide N] [--timeout SECONDS] [--names NAME...]
 
 Clean: INDEX.tsv in MODELS says manifold, without self-intersections, of cad, scan or surfaces. The command checks each
 result itself; exit code 4 is a broken promise. Columns: vertices, share of quads, regions and triangles of mending, CPU
-seconds of reading, remeshing and checking.
+seconds of reading, remeshing and checking. With --subdivide: rounds that were done, vertices that were held back, faces that
+stayed coarse.
 """
 import argparse
 import csv
+import json
 import pathlib
 import re
 import resource
@@ -30,8 +32,19 @@ def number(pattern, text):
     return found.group(1).replace(",", "") if found else "-"
 
 
-def run(certa, file, count, timeout, output):
+def subdivision_of(record):
+    if not record:
+        return ""
+    statistics = json.loads(pathlib.Path(record).read_text(encoding="utf-8"))["statistics"]
+    return (f"  {statistics['subdivision_rounds']} rounds, {statistics['held_vertices']} held, "
+            f"{statistics.get('coarse_faces', '-')} coarse")
+
+
+def run(certa, file, count, subdivide, timeout, output):
     goal = [] if count == "default" else ["--vertices", count]
+    record = output + ".json"
+    if subdivide:
+        goal += ["--subdivide", str(subdivide), "--json", record]
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     try:
         job = subprocess.run([certa, "remesh", str(file), *goal, "-o", output], capture_output=True, text=True,
@@ -44,8 +57,8 @@ def run(certa, file, count, timeout, output):
     vertices = number(r"result\s+([\d,]+) vertices", text)
     quads = number(r"quads \((\d+) %", text)
     regions, triangles = number(r"mended\s+([\d,]+) region", text), number(r"by ([\d,]+) triangles", text)
-    print(f"{file.name:32} {count:>7} {code!s:>5} {vertices:>7} {quads:>4} % {regions:>4} / {triangles:<6} {seconds:7.1f}",
-          flush=True)
+    print(f"{file.name:32} {count:>7} {code!s:>5} {vertices:>7} {quads:>4} % {regions:>4} / {triangles:<6} {seconds:7.1f}"
+          + subdivision_of(record if subdivide and code == 0 else ""), flush=True)
     if code not in (0, "time"):
         print("    " + "\n    ".join(text.strip().splitlines()[-3:]), flush=True)
 
@@ -55,6 +68,7 @@ def main():
     parser.add_argument("certa")
     parser.add_argument("models", type=pathlib.Path)
     parser.add_argument("--counts", default="500,1500,5000,default")
+    parser.add_argument("--subdivide", type=int, default=0, metavar="N", help="rounds of subdivision")
     parser.add_argument("--timeout", type=float, default=600.0)
     parser.add_argument("--names", nargs="*", default=[])
     arguments = parser.parse_args()
@@ -64,7 +78,7 @@ def main():
             if arguments.names and not any(name in file for name in arguments.names):
                 continue
             for count in arguments.counts.split(","):
-                run(arguments.certa, arguments.models / file, count, arguments.timeout, folder + "/out.obj")
+                run(arguments.certa, arguments.models / file, count, arguments.subdivide, arguments.timeout, folder + "/out.obj")
     return 0
 
 

@@ -113,6 +113,10 @@ void say_result(Session& session, const RemeshStatistics& s) {
     if (s.cut_faces > 0)
         session.say("cut          " + counted(s.cut_faces, "face") +
                     " into triangles, so that every way to fill them keeps the error");
+    if (s.subdivision_rounds > 0)
+        session.say("subdivided   " + counted(s.subdivision_rounds, "round") + "; " +
+                    counted(s.held_vertices, "vertex", "vertices") + " held back, " + counted(s.coarse_faces, "face") +
+                    " left coarse");
     if (s.distance_bound > 0.0) session.say("distance     at most " + text_of(s.distance_bound) + ", proved");
     for (const std::string& note : s.notes) session.warn(note);
 }

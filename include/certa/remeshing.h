@@ -91,8 +91,9 @@ struct RemeshStatistics {
     /// triangles.
     std::size_t mended_regions = 0, mended_triangles = 0;
     std::size_t cut_faces = 0;  ///< between lines that are triangles, so that every way to fill them keeps the error
-    /// Subdivision: vertices held back nearer to their polygon, so that nothing folds or meets; rounds that were done.
-    std::size_t held_vertices = 0, subdivision_rounds = 0;
+    /// Subdivision: vertices held back nearer to their polygon, so that nothing folds or meets; rounds that were done;
+    /// faces that were not subdivided in every round, because their pieces would do so wherever they lie.
+    std::size_t held_vertices = 0, subdivision_rounds = 0, coarse_faces = 0;
     double distance_bound = 0.0;  ///< where an error was asked for: proved, both ways, in the input's unit
     std::size_t vertices = 0, faces = 0, triangles = 0, quads = 0;
     std::size_t t_nodes = 0;            ///< polygons' corners without a turn, before they became quads and triangles

@@ -79,6 +79,7 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("cut_faces", s.cut_faces);
     put("held_vertices", s.held_vertices);
     put("subdivision_rounds", s.subdivision_rounds);
+    put("coarse_faces", s.coarse_faces);
     put("distance_bound", s.distance_bound);
     put("vertices", s.vertices);
     put("faces", s.faces);

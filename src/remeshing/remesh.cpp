@@ -659,16 +659,16 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
             mesh_, judge, report.first_added, [&](CoarseMesh& m, const PlacementOptions& how) { return place(m, how); },
             [&](CoarseMesh& m) { return judge_input(m, judge).polygons; }, mesh);
     rescue_components(best_->layout(), judge, {mending_rule(error).tolerance, report.left}, mesh, control_);
+    watch_.stage("mending");
     if (options_.subdivide > 0) {
         SubdivisionReport subdivision;
         mesh = subdivide_soundly(mesh, options_.subdivide, judge, subdivision, control_, &mesh_);
-        s.held_vertices = subdivision.held, s.subdivision_rounds = subdivision.rounds;
-        if (subdivision.rounds < options_.subdivide)
-            s.notes.push_back(std::to_string(subdivision.rounds) + " rounds of subdivision, not " +
-                              std::to_string(options_.subdivide) + ": more turn away or meet others, first near " +
-                              text_of(subdivision.place));
+        s.held_vertices = subdivision.held, s.coarse_faces = subdivision.coarse;
+        s.subdivision_rounds = subdivision.rounds;
+        const std::string note = describe(subdivision, options_.subdivide, text_of(subdivision.place));
+        if (!note.empty()) s.notes.push_back(note);
+        watch_.stage("subdivision");
     }
-    watch_.stage("mending");
     return mesh;
 }
 

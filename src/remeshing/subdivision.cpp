@@ -1,5 +1,7 @@
 // Linear subdivision, then averaging.
 //
+// A polygon with sides that are cut and others that are not becomes a fan around its middle, in which the corners
+// between two cut sides have quads; a triangle becomes triangles without one.
 // Averaging gives each polygon's share to each of its corners: of a quad the centroid with weight 1/4 (an angle of 90
 // degrees), of a triangle the point (v + 3/2 (a + b)) / 4 with weight 1/6 (60 degrees); the vertex moves towards the
 // weighted mean by a factor that depends on how many of each there are (1 where regular). On curves the same is done
@@ -10,6 +12,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <set>
 
 #include "core/vector3.h"
 
@@ -22,6 +25,7 @@ Key key_of(Index a, Index b) { return {std::min(a, b), std::max(a, b)}; }
 struct Side {
     Index curve = no_index;  // of the feature
     bool is_sharp = false;   // a feature or boundary
+    bool stays = false;      // not cut
     Index middle = no_index;
     int polygons = 0;
 };
@@ -43,12 +47,81 @@ Sides find_sides(const CoarseMesh& mesh) {
     return sides;
 }
 
+/// Sides of polygons that stay, and copies of such.
+void keep_sides(const CoarseMesh& mesh, std::span<const std::uint8_t> stays, std::span<const Index> names,
+                Sides& sides) {
+    const auto name_of = [&](Index v) { return names.empty() ? v : names[v]; };
+    std::set<Key> kept;
+    for (std::size_t q = 0; q < stays.size(); ++q) {
+        if (stays[q] == 0) continue;
+        const auto ring = mesh.polygon(q);
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            kept.insert(key_of(name_of(ring[i]), name_of(ring[(i + 1) % ring.size()])));
+    }
+    if (kept.empty()) return;
+    for (auto& [key, side] : sides) side.stays = kept.count(key_of(name_of(key.first), name_of(key.second))) > 0;
+}
+
+/// The pieces of a triangle; `middles` of sides that stay are no_index.
+void split_triangle(std::span<const Index> ring, const std::array<Index, 3>& middles, Index parent, CoarseMesh& fine) {
+    const auto add = [&](Index a, Index b, Index c) { fine.add_polygon(std::array{a, b, c}, parent); };
+    const auto cut = std::count_if(middles.begin(), middles.end(), [](Index m) { return m != no_index; });
+    if (cut == 0) {
+        fine.add_polygon(ring, parent);
+    } else if (cut == 3) {
+        add(middles[0], middles[1], middles[2]);
+        for (std::size_t i = 0; i < 3; ++i) add(ring[i], middles[i], middles[(i + 2) % 3]);
+    } else if (cut == 1) {
+        for (std::size_t i = 0; i < 3; ++i) {
+            if (middles[i] == no_index) continue;
+            add(ring[i], middles[i], ring[(i + 2) % 3]);
+            add(middles[i], ring[(i + 1) % 3], ring[(i + 2) % 3]);
+        }
+    } else {
+        const std::size_t kept = static_cast<std::size_t>(std::find(middles.begin(), middles.end(), no_index) -
+                                                          middles.begin());  // from a to b; the corner beyond is c
+        const Index a = ring[kept], b = ring[(kept + 1) % 3], c = ring[(kept + 2) % 3];
+        const Index bc = middles[(kept + 1) % 3], ca = middles[(kept + 2) % 3];
+        add(ca, bc, c);
+        const auto& p = fine.points;
+        if (distance(p[a], p[bc]) <= distance(p[b], p[ca]))
+            add(a, b, bc), add(a, bc, ca);
+        else
+            add(a, b, ca), add(b, bc, ca);
+    }
+}
+
+/// The same for more corners.
+void split_polygon(std::span<const Index> ring, std::span<const Index> middles, Index parent, CoarseMesh& fine) {
+    if (std::all_of(middles.begin(), middles.end(), [](Index m) { return m == no_index; })) {
+        fine.add_polygon(ring, parent);
+        return;
+    }
+    const std::size_t n = ring.size();
+    Point3 mean;
+    for (const Index v : ring) mean = mean + (1.0 / static_cast<double>(n)) * fine.points[v];
+    const Index centre = fine.add_vertex(mean, {});
+    for (std::size_t i = 0; i < n; ++i) {
+        const Index before = middles[(i + n - 1) % n], after = middles[i];
+        if (before != no_index && after != no_index) {
+            fine.add_polygon(std::array{ring[i], after, centre, before}, parent);
+            continue;
+        }
+        if (before != no_index) fine.add_polygon(std::array{before, ring[i], centre}, parent);
+        fine.add_polygon(std::array{ring[i], after != no_index ? after : ring[(i + 1) % n], centre}, parent);
+    }
+}
+
 /// Splits sides and polygons; new vertices are means.
-CoarseMesh split(const CoarseMesh& mesh, Sides& sides) {
+CoarseMesh split(const CoarseMesh& mesh, std::span<const std::uint8_t> stays, Sides& sides) {
     CoarseMesh fine;
     fine.points = mesh.points, fine.kinds = mesh.kinds, fine.curves = mesh.curves;
     fine.places.assign(mesh.points.size(), {});
     for (auto& [key, side] : sides) {
+        if (side.stays) {
+            if (side.curve != no_index) fine.feature_edges.push_back({key.first, key.second, side.curve});
+            continue;
+        }
         const VertexKind kind = side.polygons == 1 ? VertexKind::boundary
                                 : side.is_sharp    ? VertexKind::crease
                                                    : VertexKind::smooth;
@@ -58,23 +131,20 @@ CoarseMesh split(const CoarseMesh& mesh, Sides& sides) {
             fine.feature_edges.push_back({side.middle, key.second, side.curve});
         }
     }
-    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+    std::vector<Index> middles;
+    for (Index q = 0; q < mesh.polygon_count(); ++q) {
         const auto ring = mesh.polygon(q);
-        const std::size_t n = ring.size();
-        std::vector<Index> middles;
-        Point3 mean;
-        for (std::size_t i = 0; i < n; ++i) {
-            middles.push_back(sides.at(key_of(ring[i], ring[(i + 1) % n])).middle);
-            mean = mean + (1.0 / static_cast<double>(n)) * mesh.points[ring[i]];
-        }
-        if (n == 3) {
-            fine.add_polygon(middles);
-            for (std::size_t i = 0; i < 3; ++i) fine.add_polygon(std::array{ring[i], middles[i], middles[(i + 2) % 3]});
+        if (!stays.empty() && stays[q] != 0) {
+            fine.add_polygon(ring, q);
             continue;
         }
-        const Index centre = fine.add_vertex(mean, {});
-        for (std::size_t i = 0; i < n; ++i)
-            fine.add_polygon(std::array{ring[i], middles[i], centre, middles[(i + n - 1) % n]});
+        middles.clear();
+        for (std::size_t i = 0; i < ring.size(); ++i)
+            middles.push_back(sides.at(key_of(ring[i], ring[(i + 1) % ring.size()])).middle);
+        if (ring.size() == 3)
+            split_triangle(ring, {middles[0], middles[1], middles[2]}, q, fine);
+        else
+            split_polygon(ring, middles, q, fine);
     }
     return fine;
 }
@@ -103,6 +173,8 @@ void average(CoarseMesh& mesh) {
     std::vector<std::array<int, 2>> counts(n, {0, 0});  // quads, triangles
     for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
         const auto ring = mesh.polygon(q);
+        Point3 mean;
+        for (const Index v : ring) mean = mean + (1.0 / static_cast<double>(ring.size())) * mesh.points[v];
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const Index v = ring[i], a = ring[(i + 1) % ring.size()], b = ring[(i + ring.size() - 1) % ring.size()];
             if (ring.size() == 3) {
@@ -110,8 +182,7 @@ void average(CoarseMesh& mesh) {
                 weights[v] += 1.0 / 6.0;
                 ++counts[v][1];
             } else {
-                const Point3& c = mesh.points[ring[(i + 2) % ring.size()]];
-                sums[v] = sums[v] + 0.0625 * (mesh.points[v] + mesh.points[a] + mesh.points[b] + c);
+                sums[v] = sums[v] + 0.25 * mean;
                 weights[v] += 0.25;
                 ++counts[v][0];
             }
@@ -133,9 +204,11 @@ void average(CoarseMesh& mesh) {
 
 }  // namespace
 
-CoarseMesh subdivide(const CoarseMesh& mesh, bool smooth) {
+CoarseMesh subdivide(const CoarseMesh& mesh, bool smooth, std::span<const std::uint8_t> stays,
+                     std::span<const Index> names) {
     Sides sides = find_sides(mesh);
-    CoarseMesh fine = split(mesh, sides);
+    keep_sides(mesh, stays, names, sides);
+    CoarseMesh fine = split(mesh, stays, sides);
     if (smooth) average(fine);
     return fine;
 }

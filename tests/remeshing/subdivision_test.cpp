@@ -10,7 +10,9 @@
 #include "core/vector3.h"
 #include "mesh/generators_surfaces.h"
 #include "remeshing/coarse_meshes.h"
+#include "remeshing/missed_creases.h"
 #include "remeshing/sound_subdivision.h"
+#include "remeshing/stitch.h"
 
 namespace certa::remeshing {
 namespace {
@@ -146,7 +148,8 @@ TEST(Subdivision, NeitherFoldsNorMeetsItself) {
         CoarseMesh sound = subdivide_soundly(coarse, 2, judge, report, {});
         EXPECT_EQ(report.rounds, 2U);
         EXPECT_TRUE(find_damage(judge, sound, {}).polygons.empty());
-        EXPECT_EQ(sound.points.size(), smooth.points.size());
+        EXPECT_LT(report.coarse, coarse.polygon_count() / 5);
+        EXPECT_GT(sound.points.size(), smooth.points.size() * 9 / 10);
         held += report.held, all += sound.points.size();
     }
     EXPECT_GT(broken_before, 0U);
@@ -173,7 +176,175 @@ TEST(Subdivision, IsLeftOutRatherThanBroken) {
     const CoarseMesh sound = subdivide_soundly(coarse, 1, judge, report, {});
     EXPECT_EQ(report.rounds, 0U);
     EXPECT_EQ(report.place, coarse.points[0]);
+    EXPECT_EQ(report.coarse, 1U);
     EXPECT_EQ(sound.polygon_count(), 1U);
+}
+
+/// The same beside another polygon, which is subdivided but for the side in common.
+TEST(Subdivision, OnlyWhatWouldBreakStaysCoarse) {
+    constexpr double height = 1e-3;
+    const TriangleMesh input{
+        {{-9, -9, 0}, {9, -9, 0}, {0, 9, 0}, {0.6, 0.6, height}, {0.6, 0.8, height}, {0.8, 0.6, height}},
+        {{VertexId{0}, VertexId{1}, VertexId{2}}, {VertexId{3}, VertexId{4}, VertexId{5}}}};
+    const core::TriangleTree tree(input.positions, input.triangles);
+    const Judge judge{input, tree, 20.0, true};
+    CoarseMesh coarse;
+    for (const Point3& p : {Point3{0, 0, height}, Point3{4, 0, height}, Point3{0, 4, height}, Point3{4, 4, height}})
+        coarse.add_vertex(p, {}, VertexKind::corner);
+    coarse.add_polygon(std::array<Index, 3>{0, 1, 2});
+    coarse.add_polygon(std::array<Index, 3>{1, 3, 2});
+    SubdivisionReport report;
+    const CoarseMesh sound = subdivide_soundly(coarse, 1, judge, report, {});
+    EXPECT_EQ(report.rounds, 1U);
+    EXPECT_EQ(report.coarse, 1U);
+    EXPECT_EQ(report.place, coarse.points[0]);
+    EXPECT_EQ(sound.polygon_count(), 4U);
+    EXPECT_EQ(sound.points.size(), 6U);
+    int boundary_sides = 0;
+    EXPECT_EQ(euler_characteristic(sound, boundary_sides), 1);
+    EXPECT_EQ(boundary_sides, 6);
+    CoarseMesh again = sound;
+    EXPECT_TRUE(find_damage(judge, again, {}).polygons.empty());
+    const CoarseMesh twice = subdivide_soundly(coarse, 2, judge, report, {});
+    EXPECT_EQ(report.rounds, 2U);
+    EXPECT_EQ(euler_characteristic(twice, boundary_sides), 1);
+    EXPECT_EQ(std::count(twice.parents.begin(), twice.parents.end(), 0U), 1);
+}
+
+/// Any choice of polygons that stay leaves a mesh that conforms, and covers the same where it is flat.
+TEST(Subdivision, FansBesideWhatStaysConform) {
+    core::Random random(5);
+    for (int round = 0; round < 20; ++round) {
+        CoarseMesh coarse = make_flat_grid(4);
+        CoarseMesh mixed = coarse.without_polygons();
+        for (std::size_t q = 0; q < coarse.polygon_count(); ++q) {
+            const auto ring = coarse.polygon(q);
+            if (random.uniform() < 0.5) {
+                mixed.add_polygon(ring);
+            } else {
+                mixed.add_polygon(std::array{ring[0], ring[1], ring[2]});
+                mixed.add_polygon(std::array{ring[0], ring[2], ring[3]});
+            }
+        }
+        std::vector<std::uint8_t> stays;
+        for (std::size_t q = 0; q < mixed.polygon_count(); ++q) stays.push_back(random.uniform() < 0.2 ? 1 : 0);
+        const CoarseMesh fine = subdivide(mixed, false, stays);
+        int boundary_sides = 0;
+        EXPECT_EQ(euler_characteristic(fine, boundary_sides), 1);
+        double area = 0.0;
+        for (std::size_t q = 0; q < fine.polygon_count(); ++q) {
+            const auto ring = fine.polygon(q);
+            for (std::size_t i = 1; i + 1 < ring.size(); ++i) {
+                const Point3 twice =
+                    cross(fine.points[ring[i]] - fine.points[ring[0]], fine.points[ring[i + 1]] - fine.points[ring[0]]);
+                EXPECT_GT(twice.z, 0.0);
+                area += 0.5 * twice.z;
+            }
+        }
+        EXPECT_NEAR(area, 1.0, 1e-12);
+        for (std::size_t q = 0; q < stays.size(); ++q) {
+            const auto pieces = std::count(fine.parents.begin(), fine.parents.end(), q);
+            EXPECT_EQ(pieces == 1 || stays[q] == 0, true);
+            EXPECT_GE(pieces, 1);
+        }
+    }
+}
+
+/// A crease in a plane, zigzag but without corners: smoothed, it would be nowhere near itself.
+TEST(Subdivision, CreasesStayCovered) {
+    constexpr std::uint32_t n = 8;
+    TriangleMesh input;
+    RemeshOptions options;
+    for (std::uint32_t j = 0; j <= n; ++j)
+        for (std::uint32_t i = 0; i <= n; ++i)
+            input.positions.push_back({1.0 * i, 1.0 * j + (j == n / 2 ? 0.14 * (i % 2 == 0 ? 1.0 : -1.0) : 0.0), 0.0});
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            const std::uint32_t a = j * (n + 1) + i;
+            input.triangles.push_back({VertexId{a}, VertexId{a + 1}, VertexId{a + n + 2}});
+            input.triangles.push_back({VertexId{a}, VertexId{a + n + 2}, VertexId{a + n + 1}});
+            if (j == n / 2) options.features.push_back({VertexId{a}, VertexId{a + 1}});
+        }
+    RemeshStatistics statistics;
+    const WorkMesh work = build_work_mesh(input, options, statistics);
+    CoarseMesh coarse;
+    for (Index v = 0; v < work.points.size(); ++v)
+        coarse.add_vertex(work.points[v], {}, work.is_corner[v] ? VertexKind::corner : VertexKind::smooth);
+    for (const auto& f : work.faces) coarse.add_polygon(f);
+    for (Index e = 0; e < work.edge_curves.size(); ++e) {
+        const Index h = work.edge_halfedges[e];
+        if (work.edge_curves[e] != no_index)
+            coarse.feature_edges.push_back({work.start_of(h), work.end_of(h), work.edge_curves[e]});
+    }
+    const core::TriangleTree tree(input.positions, input.triangles);
+    const Judge judge{input, tree, work.diagonal, true};
+    std::vector<Index> missed;
+    EXPECT_GT(add_missed_creases(work, judge, subdivide(coarse), 1e-3, missed), 0.01);
+    for (const std::uint64_t rounds : {2U}) {
+        SubdivisionReport report;
+        const CoarseMesh sound = subdivide_soundly(coarse, rounds, judge, report, {}, &work);
+        EXPECT_EQ(report.rounds, rounds);
+        EXPECT_GT(report.held, 0U);
+        EXPECT_LT(add_missed_creases(work, judge, sound, 1e-3, missed), 1e-5);
+    }
+}
+
+/// Three sheets at one bent edge, each with its copies: what happens to one happens to all.
+TEST(Subdivision, CopiesStayTogether) {
+    constexpr Index length = 5;
+    CoarseMesh coarse;
+    TriangleMesh input;
+    for (Index sheet = 0; sheet < 3; ++sheet) {
+        const double angle = 2.0 * sheet;
+        for (Index k = 0; k < length; ++k) {
+            coarse.add_vertex({0.0, k % 2 == 0 ? 0.05 : 0.0, 1.0 * k}, {}, VertexKind::boundary, 0);
+            coarse.add_vertex({2.0 * std::cos(angle), 2.0 * std::sin(angle), 1.0 * k}, {}, VertexKind::boundary, 0);
+        }
+        for (Index k = 0; k + 1 < length; ++k) {
+            const Index a = 2 * (sheet * length + k);
+            coarse.add_polygon(std::array<Index, 3>{a, a + 1, a + 3});
+            coarse.add_polygon(std::array<Index, 3>{a, a + 3, a + 2});
+        }
+    }
+    input.positions = coarse.points;
+    for (std::size_t q = 0; q < coarse.polygon_count(); ++q) {
+        const auto t = coarse.polygon(q);
+        input.triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+    }
+    // Something turned over, and nearer, below the middle of a piece of the first sheet's second triangle.
+    const Point3 place = (1.0 / 6.0) * (4.0 * coarse.points[0] + coarse.points[3] + coarse.points[2]);
+    const auto first = static_cast<std::uint32_t>(input.positions.size());
+    for (const Point3& off : {Point3{0, 1e-9, 0}, Point3{0.05, 1e-9, 0}, Point3{0, 1e-9, 0.05}})
+        input.positions.push_back(place + off + Point3{-0.01, 0, -0.01});
+    const Point3 over = cross(coarse.points[3] - coarse.points[0], coarse.points[2] - coarse.points[0]);
+    std::array<std::uint32_t, 3> t{first, first + 1, first + 2};
+    if (dot(cross(input.positions[t[1]] - input.positions[t[0]], input.positions[t[2]] - input.positions[t[0]]), over) >
+        0.0)
+        std::swap(t[1], t[2]);
+    for (std::size_t q = 0; q < input.triangles.size(); ++q)
+        if (q == 1) input.triangles[q] = {VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}};
+    const core::TriangleTree tree(input.positions, input.triangles);
+    const Judge judge{input, tree, 5.0, false, true};
+    SubdivisionReport report;
+    const CoarseMesh sound = stitch(subdivide_soundly(coarse, 1, judge, report, {}));
+    EXPECT_EQ(report.rounds, 1U);
+    EXPECT_GT(report.held + report.coarse, 0U);
+    std::map<std::pair<Index, Index>, int> sides;
+    for (std::size_t q = 0; q < sound.polygon_count(); ++q) {
+        const auto ring = sound.polygon(q);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Index a = ring[i], b = ring[(i + 1) % ring.size()];
+            ++sides[{std::min(a, b), std::max(a, b)}];
+        }
+    }
+    int shared = 0;
+    for (const auto& [side, times] : sides) {
+        const auto is_inner = [&](Index v) { return std::hypot(sound.points[v].x, sound.points[v].y) < 0.3; };
+        if (!is_inner(side.first) || !is_inner(side.second)) continue;
+        EXPECT_EQ(times, 3);
+        ++shared;
+    }
+    EXPECT_GE(shared, 4);
 }
 
 }  // namespace
