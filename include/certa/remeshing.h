@@ -63,7 +63,7 @@ struct CurvatureLine {
     bool closed = false;
     std::vector<Point3> points;
 };
-/// Where the directions are not defined: index +1/2 (wedge) or -1/2 (trisector).
+/// Where the directions are not defined: index +1/2 (wedge) or -1/2 (trisector), seldom more.
 struct Umbilic {
     Point3 place;
     std::uint32_t face = 0;  ///< triangle of the input
@@ -81,6 +81,7 @@ struct RemeshStatistics {
     std::size_t wedges = 0, trisectors = 0;
     std::size_t cancelled_pairs = 0;           ///< of a wedge and a trisector, closer than the spacing: smoothed away
     std::size_t umbilics_typed_otherwise = 0;  ///< by the linear field's polynomial than by the index, which counts
+    std::size_t multiple_umbilics = 0;         ///< triangles of an index beyond 1/2: tips too sharp to be cut up
     int umbilic_half_turns = 0;                ///< sum of all indices times two
     std::size_t isotropic_samples = 0;         ///< vertices that polygons are triangulated around
     std::size_t lines_min = 0, lines_max = 0, closed_lines = 0;

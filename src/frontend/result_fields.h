@@ -67,6 +67,7 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("split_vertices", s.split_vertices);
     put("wedges", s.wedges);
     put("trisectors", s.trisectors);
+    put("multiple_umbilics", s.multiple_umbilics);
     put("umbilic_half_turns", s.umbilic_half_turns);
     put("lines_min", s.lines_min);
     put("lines_max", s.lines_max);

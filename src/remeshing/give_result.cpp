@@ -1,6 +1,10 @@
 // Copies into the public structures.
 #include "remeshing/give_result.h"
 
+#include <cstdlib>
+#include <locale>
+#include <sstream>
+
 #include "core/vector3.h"
 
 namespace certa::remeshing {
@@ -26,6 +30,36 @@ void give_polygons(const CoarseMesh& mesh, RemeshResult& result) {
     }
 }
 
+namespace {
+
+Point3 place_of(const FieldUmbilic& u, const WorkMesh& mesh) {
+    const auto& f = mesh.faces[u.face];
+    return u.weights[0] * mesh.points[f[0]] + u.weights[1] * mesh.points[f[1]] + u.weights[2] * mesh.points[f[2]];
+}
+
+}  // namespace
+
+void count_umbilics(const DirectionField& field, const WorkMesh& mesh, RemeshStatistics& s) {
+    const FieldUmbilic* first = nullptr;
+    for (const FieldUmbilic& u : field.umbilics) {
+        s.wedges += u.half_turns == 1 ? 1 : 0;
+        s.trisectors += u.half_turns == -1 ? 1 : 0;
+        s.umbilic_half_turns += u.half_turns;
+        s.umbilics_typed_otherwise += u.typed_half_turns != u.half_turns ? 1 : 0;
+        if (std::abs(u.half_turns) < 2) continue;
+        ++s.multiple_umbilics;
+        if (first == nullptr) first = &u;
+    }
+    if (first == nullptr) return;
+    const Point3 p = place_of(*first, mesh);
+    std::ostringstream note;
+    note.imbue(std::locale::classic());
+    note << "directions turn more than once around " << s.multiple_umbilics
+         << (s.multiple_umbilics == 1 ? " triangle" : " triangles") << " of the input, first near (" << p.x << ", "
+         << p.y << ", " << p.z << "): lines there follow one of the turns only";
+    s.notes.push_back(note.str());
+}
+
 void give_lines(const Network& network, const DirectionField& field, const WorkMesh& mesh, bool with_lines,
                 RemeshResult& result) {
     for (const Line& line : network.lines()) {
@@ -37,12 +71,8 @@ void give_lines(const Network& network, const DirectionField& field, const WorkM
         for (const Index c : line.crossings) out.points.push_back(network.point(c));
         result.lines.push_back(std::move(out));
     }
-    for (const FieldUmbilic& u : field.umbilics) {
-        const auto& f = mesh.faces[u.face];
-        const Point3 place =
-            u.weights[0] * mesh.points[f[0]] + u.weights[1] * mesh.points[f[1]] + u.weights[2] * mesh.points[f[2]];
-        result.umbilics.push_back({place, mesh.face_sources[u.face], u.half_turns});
-    }
+    for (const FieldUmbilic& u : field.umbilics)
+        result.umbilics.push_back({place_of(u, mesh), mesh.face_sources[u.face], u.half_turns});
 }
 
 }  // namespace certa::remeshing

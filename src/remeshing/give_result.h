@@ -13,4 +13,7 @@ void give_polygons(const CoarseMesh& mesh, RemeshResult& result);
 void give_lines(const Network& network, const DirectionField& field, const WorkMesh& mesh, bool with_lines,
                 RemeshResult& result);
 
+/// By index; those beyond 1/2, if there are any, with a note.
+void count_umbilics(const DirectionField& field, const WorkMesh& mesh, RemeshStatistics& statistics);
+
 }  // namespace certa::remeshing

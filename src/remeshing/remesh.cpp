@@ -210,12 +210,7 @@ bool Remesher::prepare() {
     const Spacing spacing = compute_spacing(mesh_, field_, rule_of(start_error(wanted_count())), {});
     s.cancelled_pairs = cancel_umbilic_pairs(mesh_, spacing, field_, control_);
     watch_.stage("umbilics");
-    for (const FieldUmbilic& u : field_.umbilics) {
-        s.wedges += u.half_turns > 0 ? 1 : 0;
-        s.trisectors += u.half_turns < 0 ? 1 : 0;
-        s.umbilic_half_turns += u.half_turns;
-        s.umbilics_typed_otherwise += u.typed_half_turns != u.half_turns ? 1 : 0;
-    }
+    count_umbilics(field_, mesh_, s);
     return !control_.cancelled();
 }
 

@@ -390,45 +390,77 @@ void cut_face(const std::array<Index, 3>& f, const std::array<Index, 3>& middle,
 
 }  // namespace
 
+namespace {
+
+/// Halves the edges that are wanted so, by their ends, and their triangles with them. False: none was.
+template <class IsWanted>
+bool halve_edges(WorkMesh& work, Index input_vertices, const IsWanted& is_wanted) {
+    core::PairMap middles(64);
+    std::vector<std::array<Index, 3>> faces;
+    std::vector<Index> sources;
+    const auto middle_of = [&](Index a, Index b) {
+        if (!is_wanted(a, b)) return no_index;
+        Index m = middles.find(a, b);
+        if (m != no_index) return m;
+        m = static_cast<Index>(work.points.size());
+        middles.set(a, b, m);
+        const Point3 middle = 0.5 * (work.points[a] + work.points[b]);
+        work.points.push_back(middle);
+        const Index source = input_vertices + m, sa = work.point_sources[a], sb = work.point_sources[b];
+        work.point_sources.push_back(source);
+        for (auto* marked : {&work.tagged, &work.guides})
+            if (marked->contains(pair_key(sa, sb))) {
+                marked->insert(pair_key(sa, source));
+                marked->insert(pair_key(source, sb));
+            }
+        return m;
+    };
+    bool any = false;
+    for (std::size_t f = 0; f < work.faces.size(); ++f) {
+        const auto& [a, b, c] = work.faces[f];
+        const std::array<Index, 3> middle{middle_of(a, b), middle_of(b, c), middle_of(c, a)};
+        if (middle == std::array{no_index, no_index, no_index}) {
+            faces.push_back(work.faces[f]);
+        } else {
+            any = true;
+            cut_face(work.faces[f], middle, work.points, faces);
+        }
+        sources.resize(faces.size(), work.face_sources[f]);
+    }
+    work.faces = std::move(faces);
+    work.face_sources = std::move(sources);
+    return any;
+}
+
+/// Edges opposite to where the surface is so far from flat that directions could turn around a single face more than
+/// once: its angles, measured so that they are 2 pi around each vertex, differ from pi by 90 degrees or more. By the
+/// point_sources of their ends.
+std::unordered_set<std::uint64_t> edges_beyond_tips(const WorkMesh& work) {
+    constexpr double most = 0.49 * std::numbers::pi;
+    std::unordered_set<std::uint64_t> edges;
+    for (Index f = 0; f < work.face_count(); ++f) {
+        double excess = 0.0, largest = -1.0;
+        Index tip = 0;
+        for (Index i = 0; i < 3; ++i) {
+            const Complex o = work.local(f, i), p = work.local(f, (i + 1) % 3), q = work.local(f, (i + 2) % 3);
+            const double own = work.corner_angle[3 * f + i] - std::arg((q - o) * std::conj(p - o));
+            excess += own;
+            if (std::abs(own) > largest) largest = std::abs(own), tip = i;
+        }
+        if (std::abs(excess) < most) continue;
+        const Index a = work.faces[f][(tip + 1) % 3], b = work.faces[f][(tip + 2) % 3];
+        edges.insert(pair_key(work.point_sources[a], work.point_sources[b]));
+    }
+    return edges;
+}
+
+}  // namespace
+
 void split_long_edges(WorkMesh& work, double longest, Index input_vertices, double most_faces) {
     if (!(longest > 0.0)) return;
-    for (int round = 0; round < 16 && static_cast<double>(work.faces.size()) <= most_faces; ++round) {
-        core::PairMap middles(64);
-        std::vector<std::array<Index, 3>> faces;
-        std::vector<Index> sources;
-        const auto middle_of = [&](Index a, Index b) {
-            if (!(distance(work.points[a], work.points[b]) > longest)) return no_index;
-            Index m = middles.find(a, b);
-            if (m != no_index) return m;
-            m = static_cast<Index>(work.points.size());
-            middles.set(a, b, m);
-            const Point3 middle = 0.5 * (work.points[a] + work.points[b]);
-            work.points.push_back(middle);
-            const Index source = input_vertices + m, sa = work.point_sources[a], sb = work.point_sources[b];
-            work.point_sources.push_back(source);
-            for (auto* marked : {&work.tagged, &work.guides})
-                if (marked->contains(pair_key(sa, sb))) {
-                    marked->insert(pair_key(sa, source));
-                    marked->insert(pair_key(source, sb));
-                }
-            return m;
-        };
-        bool any = false;
-        for (std::size_t f = 0; f < work.faces.size(); ++f) {
-            const auto& [a, b, c] = work.faces[f];
-            const std::array<Index, 3> middle{middle_of(a, b), middle_of(b, c), middle_of(c, a)};
-            if (middle == std::array{no_index, no_index, no_index}) {
-                faces.push_back(work.faces[f]);
-            } else {
-                any = true;
-                cut_face(work.faces[f], middle, work.points, faces);
-            }
-            sources.resize(faces.size(), work.face_sources[f]);
-        }
-        work.faces = std::move(faces);
-        work.face_sources = std::move(sources);
-        if (!any) return;
-    }
+    const auto is_long = [&](Index a, Index b) { return distance(work.points[a], work.points[b]) > longest; };
+    for (int round = 0; round < 16 && static_cast<double>(work.faces.size()) <= most_faces; ++round)
+        if (!halve_edges(work, input_vertices, is_long)) return;
 }
 
 void build_wedges(WorkMesh& work) {
@@ -487,16 +519,8 @@ double longest_edge(const WorkMesh& work, double count) {
     return std::min(longest, 0.6 * std::sqrt(area / count));
 }
 
-WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics,
-                         double count) {
-    check_input(mesh);
-    WorkMesh work;
-    statistics.input_vertices = mesh.positions.size();
-    statistics.input_triangles = mesh.triangles.size();
-    take_faces(work, mesh, options, statistics);
-    // Needles come apart into ever more of them.
-    const double most_faces = count == 0.0 ? 1e300 : 4.0 * static_cast<double>(work.faces.size()) + 20.0 * count;
-    split_long_edges(work, longest_edge(work, count), static_cast<Index>(mesh.positions.size()), most_faces);
+/// From triangles to all of it.
+void connect(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
     statistics.non_manifold_edges = pair_halfedges(work);
     orient(work, statistics);
     pair_halfedges(work);
@@ -516,7 +540,31 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     find_features(work, options, statistics);
     find_patches(work);
     build_wedges(work);
-    return work;
+}
+
+WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics,
+                         double count) {
+    constexpr int most_rounds = 12;
+    check_input(mesh);
+    WorkMesh soup;
+    statistics.input_vertices = mesh.positions.size();
+    statistics.input_triangles = mesh.triangles.size();
+    take_faces(soup, mesh, options, statistics);
+    // Needles come apart into ever more of them.
+    const double most_faces = count == 0.0 ? 1e300 : 4.0 * static_cast<double>(soup.faces.size()) + 20.0 * count;
+    const auto input_vertices = static_cast<Index>(mesh.positions.size());
+    split_long_edges(soup, longest_edge(soup, count), input_vertices, most_faces);
+    const RemeshStatistics before = statistics;
+    for (int round = 0;; ++round) {
+        WorkMesh work = soup;
+        statistics = before;
+        connect(work, mesh, options, statistics);
+        const std::unordered_set<std::uint64_t> edges = edges_beyond_tips(work);
+        if (edges.empty() || round == most_rounds) return work;
+        halve_edges(soup, input_vertices, [&](Index a, Index b) {
+            return edges.contains(pair_key(soup.point_sources[a], soup.point_sources[b]));
+        });
+    }
 }
 
 }  // namespace certa::remeshing

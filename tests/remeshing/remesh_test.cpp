@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <complex>
 #include <map>
 #include <numbers>
 
 #include "core/random.h"
 #include "facetted_pipe.h"
 #include "mesh/generators_surfaces.h"
+#include "remeshing/give_result.h"
 #include "remeshing/polygons.h"
 #include "remeshing/trace_lines.h"
 
@@ -125,6 +127,55 @@ TEST(Umbilics, LieWhereTheoryPutsThem) {
     ASSERT_EQ(monkey.field.umbilics.size(), 1U);
     EXPECT_EQ(monkey.field.umbilics[0].half_turns, -1);
     EXPECT_LT(norm(monkey.mesh.points[monkey.mesh.faces[monkey.field.umbilics[0].face][0]]), 0.1);
+}
+
+/// The real part of (x + i y)^n has an umbilic of index 1 - n / 2: as many trisectors, each in a triangle of its own.
+TEST(Umbilics, HigherOnesComeApart) {
+    for (const int n : {4, 5}) {
+        const Prepared p = prepare(
+            graph_of(40, [&](double x, double y) { return 0.05 * std::pow(std::complex<double>(x, y), n).real(); }),
+            2.0);
+        EXPECT_EQ(half_turns(p), 2 - n);
+        for (const FieldUmbilic& u : p.field.umbilics) {
+            EXPECT_EQ(std::abs(u.half_turns), 1);
+            EXPECT_LT(norm(p.mesh.points[p.mesh.faces[u.face][0]]), 0.4);
+        }
+    }
+}
+
+/// At the tip of a spike three triangles have all of the curvature: directions could turn around one of them twice.
+/// They are cut up until that cannot be, whatever the directions.
+TEST(Umbilics, NoTriangleIsTurnedAroundTwice) {
+    TriangleMesh spike = generators::make_icosphere(1);
+    const Triangle base = spike.triangles.back();
+    spike.triangles.pop_back();
+    Point3 tip;
+    for (const VertexId v : base) tip = tip + 3.0 * spike.positions[index_of(v)];
+    const VertexId top{static_cast<std::uint32_t>(spike.positions.size())};
+    spike.positions.push_back(tip);
+    for (std::size_t i = 0; i < 3; ++i) spike.triangles.push_back({base[i], base[(i + 1) % 3], top});
+    RemeshOptions options;
+    options.feature_angle_radians = 3.2;
+    Prepared p;
+    p.mesh = build_work_mesh(spike, options, p.statistics);
+    EXPECT_EQ(p.statistics.input_triangles, spike.triangles.size());
+    core::Random random(11);
+    for (int round = 0; round < 100; ++round) {
+        p.field.squares.clear();
+        for (Index w = 0; w < p.mesh.wedge_count(); ++w)
+            p.field.squares.push_back(std::polar(1.0, 2.0 * pi * random.uniform()));
+        finish_directions(p.mesh, p.field);
+        EXPECT_EQ(half_turns(p), 4);
+        for (const FieldUmbilic& u : p.field.umbilics) EXPECT_EQ(std::abs(u.half_turns), 1);
+    }
+    // What there is none of is counted and said all the same.
+    p.field.umbilics.assign(1, {0, 2, {1.0, 0.0, 0.0}, false, 0});
+    RemeshStatistics statistics;
+    count_umbilics(p.field, p.mesh, statistics);
+    EXPECT_EQ(statistics.multiple_umbilics, 1U);
+    EXPECT_EQ(statistics.wedges, 0U);
+    EXPECT_EQ(statistics.umbilic_half_turns, 2);
+    EXPECT_EQ(statistics.notes.size(), 1U);
 }
 
 TEST(Lines, FollowTheTorus) {
