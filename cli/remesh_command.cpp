@@ -9,6 +9,7 @@
 #include <charconv>
 #include <fstream>
 #include <memory>
+#include <set>
 
 #include "check_surface_command.h"
 #include "commands.h"
@@ -59,6 +60,24 @@ std::vector<Edge> read_edges(const std::string& path, std::size_t vertices) {
     }
     if (edges.empty()) throw IoError(path, 0, "names no edge: expected two vertex numbers a line, from 1");
     return edges;
+}
+
+/// Segments that are edges of the surface: others cannot be creases.
+std::vector<Edge> edges_among(const std::vector<Edge>& segments, const TriangleMesh& mesh, Session& session) {
+    if (segments.empty()) return {};
+    const WeldedSurface welded = weld_surface(mesh);
+    std::set<std::pair<VertexId, VertexId>> edges;
+    for (const Triangle& t : welded.mesh.triangles)
+        for (std::size_t i = 0; i < 3; ++i) edges.insert(std::minmax(t[i], t[(i + 1) % 3]));
+    std::vector<Edge> found;
+    for (const Edge& s : segments) {
+        const VertexId a = welded.numbers[index_of(s[0])], b = welded.numbers[index_of(s[1])];
+        if (edges.count(std::minmax(a, b)) > 0) found.push_back(s);
+    }
+    if (found.size() < segments.size())
+        session.warn(counted(segments.size() - found.size(), "segment") +
+                     " of the file that no side of a polygon is are left out: creases are edges of the surface");
+    return found;
 }
 
 MeshDocument document_of(const RemeshResult& result) {
@@ -121,12 +140,12 @@ void say_result(Session& session, const RemeshStatistics& s) {
     for (const std::string& note : s.notes) session.warn(note);
 }
 
-/// Nothing that folds, meets itself or misses a crease is written. Subdivision smooths: no distance is promised then.
+/// Nothing that folds, meets itself, misses a crease or is too far is written.
 void verify(Session& session, const RemeshArguments& arguments, const RemeshResult& result, const TriangleMesh& input) {
     SurfaceCheckOptions options;
     options.feature_angle_radians = arguments.options.feature_angle_radians;
     options.features = arguments.options.features;
-    if (arguments.options.subdivide == 0) options.error = arguments.options.error;
+    options.error = arguments.options.error;
     const WeldedSurface welded = weld_surface(input);  // what the result is a result of
     for (Edge& edge : options.features)
         for (VertexId& v : edge)
@@ -151,7 +170,13 @@ void verify(Session& session, const RemeshArguments& arguments, const RemeshResu
 
 ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     if (arguments.output.given()) session.require_writable(arguments.output);
-    if (arguments.lines.given()) session.require_writable(arguments.lines);
+    if (arguments.lines.given()) {
+        session.require_writable(arguments.lines);
+        const Format format = *format_of(arguments.lines.path);
+        if (format != Format::vtu && format != Format::ply)
+            throw UsageError("--lines: " + std::string(name_of(format)) +
+                             " cannot say which family lines are of; .vtu and .ply can");
+    }
     const MeshDocument document = session.read(arguments.input, "input");
     const std::uint64_t corners = document.complex.corners.size() + 12 * document.tetrahedra.size();
     session.require_memory(700 * corners + 400 * document.complex.positions.size(), "remeshing this surface");
@@ -160,7 +185,7 @@ ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     if (!arguments.options.error && !arguments.options.vertices && !arguments.options.faces)
         arguments.options.error = default_remesh_error;
     arguments.options.lines = arguments.lines.given();
-    arguments.options.features = document.complex.segments;
+    arguments.options.features = edges_among(document.complex.segments, surface.mesh, session);
     if (!arguments.features.empty())
         for (const Edge& edge : read_edges(arguments.features, document.complex.positions.size()))
             arguments.options.features.push_back(edge);
@@ -227,7 +252,7 @@ void add_remesh_command(CLI::App& app, Action& action) {
         ->add_option("--guides", arguments->guides,
                      "edges of the input that lines follow without being creases: a file like that of --features")
         ->type_name("FILE");
-    command->add_option("--lines", arguments->lines.path, "also write lines and umbilics (.vtu, .msh)")
+    command->add_option("--lines", arguments->lines.path, "also write lines and umbilics (.vtu, .ply)")
         ->type_name("FILE");
     command->add_flag("--no-placement", arguments->no_placement, "leave vertices on the input surface");
     command->add_flag("--no-verify", arguments->no_verify, "do not check the result before writing it");

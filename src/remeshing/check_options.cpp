@@ -24,6 +24,8 @@ void check_options(const RemeshOptions& options) {
     if (!options.guides.empty() && options.smoothing_method != SmoothingMethod::screened)
         refuse_option("guides need the smoothing method screened, which can hold directions fast");
     if (options.max_degree != 0 && options.max_degree < 3) refuse_option("max_degree must be 3 at least, or 0");
+    if (options.max_degree != 0 && options.output != RemeshOutput::polygons)
+        refuse_option("max_degree is for the output polygons: others have three corners, or four");
 }
 
 }  // namespace certa::remeshing

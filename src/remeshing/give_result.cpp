@@ -1,6 +1,7 @@
 // Copies into the public structures.
 #include "remeshing/give_result.h"
 
+#include <cmath>
 #include <cstdlib>
 #include <locale>
 #include <sstream>
@@ -73,6 +74,14 @@ void give_lines(const Network& network, const DirectionField& field, const WorkM
     }
     for (const FieldUmbilic& u : field.umbilics)
         result.umbilics.push_back({place_of(u, mesh), mesh.face_sources[u.face], u.half_turns});
+}
+
+void note_count(double count, double wanted, double network, RemeshStatistics& statistics) {
+    if (std::abs(std::log(count / wanted)) <= 0.05) return;
+    const auto text_of = [](double n) { return std::to_string(static_cast<std::size_t>(n)); };
+    std::string note = "the nearest count that was found is " + text_of(count) + ", not " + text_of(wanted);
+    if (count > 1.05 * network) note += "; mending has added " + text_of(count - network) + " of them";
+    statistics.notes.push_back(std::move(note));
 }
 
 }  // namespace certa::remeshing

@@ -16,4 +16,7 @@ void give_lines(const Network& network, const DirectionField& field, const WorkM
 /// By index; those beyond 1/2, if there are any, with a note.
 void count_umbilics(const DirectionField& field, const WorkMesh& mesh, RemeshStatistics& statistics);
 
+/// A note where a count misses what was wanted by more than 5 %. `network`: before mending.
+void note_count(double count, double wanted, double network, RemeshStatistics& statistics);
+
 }  // namespace certa::remeshing

@@ -129,7 +129,11 @@ private:
     Damage judge_input(CoarseMesh& mesh, Judge& judge);
     void give_input(double tolerance);
     void finish_count();
-    void emit(const CoarseMesh& mesh) { give_polygons(mesh_.is_cut_open ? stitch(mesh) : mesh, result_); }
+    void emit(const CoarseMesh& mesh) {
+        given_ = mesh;
+        give_polygons(mesh_.is_cut_open ? stitch(mesh) : mesh, result_);
+    }
+    void subdivide_result();
     PlacementReport place(CoarseMesh& mesh, const PlacementOptions& options = {});
     CoarseMesh cut(const CoarseMesh& polygons);
     void describe_polygons();
@@ -148,6 +152,7 @@ private:
     double balance_ = 1.0;  ///< see SpacingRule
     CoarseMesh placed_;     ///< what `finish` has made, but for open faces ...
     CoarseMesh filled_;     ///< ... and with them
+    CoarseMesh given_;      ///< the result, with copies of vertices
     std::vector<Recut> recuts_;
     std::optional<Draft> best_;
 };
@@ -655,15 +660,6 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
             [&](CoarseMesh& m) { return judge_input(m, judge).polygons; }, mesh);
     rescue_components(best_->layout(), judge, {mending_rule(error).tolerance, report.left}, mesh, control_);
     watch_.stage("mending");
-    if (options_.subdivide > 0) {
-        SubdivisionReport subdivision;
-        mesh = subdivide_soundly(mesh, options_.subdivide, judge, subdivision, control_, &mesh_);
-        s.held_vertices = subdivision.held, s.coarse_faces = subdivision.coarse;
-        s.subdivision_rounds = subdivision.rounds;
-        const std::string note = describe(subdivision, options_.subdivide, text_of(subdivision.place));
-        if (!note.empty()) s.notes.push_back(note);
-        watch_.stage("subdivision");
-    }
     return mesh;
 }
 
@@ -712,7 +708,7 @@ void Remesher::finish_count() {
             kept.emplace(Attempt{std::move(*best_), std::move(mesh), result_.statistics});
         }
         // An aim that was lowered for nothing may rise again.
-        if (least < 0.03 || (round == 0 && !is_mended) || options_.subdivide > 0) break;
+        if (least < 0.03 || (round == 0 && !is_mended)) break;
         aim = std::log(drafted);
         (off > 0.0 ? many : few) = {aim, off};
         // The next network may need less of it.
@@ -731,13 +727,25 @@ void Remesher::finish_count() {
         if (!finish()) break;
     }
     keep(std::move(*kept));
-    const double after = final_count(kept->mesh);
-    if (options_.subdivide > 0 || std::abs(std::log(after / wanted)) <= 0.05) return;
-    std::string note = "the nearest count that was found is " + std::to_string(static_cast<std::size_t>(after)) +
-                       ", not " + std::to_string(static_cast<std::size_t>(wanted));
-    if (after > 1.05 * network)
-        note += "; mending has added " + std::to_string(static_cast<std::size_t>(after - network)) + " of them";
-    result_.statistics.notes.push_back(std::move(note));
+    note_count(final_count(kept->mesh), wanted, network, result_.statistics);
+}
+
+/// The last stage: rounds of subdivision, which keep what has been promised, of what would have been given without.
+void Remesher::subdivide_result() {
+    if (options_.subdivide == 0 || control_.cancelled() || result_.outcome != Outcome::done) return;
+    const bool keeps_error = wanted_count() == 0.0;
+    const Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
+    SubdivisionRule rule{options_.subdivide, keeps_error ? wanted_error() / 1.03 : 0.0, &mesh_};
+    SubdivisionReport report;
+    const CoarseMesh coarse = given_;
+    emit(subdivide_soundly(coarse, rule, judge, report, control_));
+    watch_.stage("subdivision");
+    if (keeps_error && !control_.cancelled() && prove_distance() > wanted_error()) {
+        report = {};
+        emit(coarse);
+        prove_distance();
+    }
+    give_report(report, options_.subdivide, result_.statistics);
 }
 
 /// Takes an attempt for the result; its times are those of all.
@@ -758,6 +766,7 @@ RemeshResult Remesher::run() {
             meet_error();
         }
     }
+    if (best_) subdivide_result();
     if (control_.cancelled() || !best_) {
         result_.outcome = Outcome::cancelled;
         return std::move(result_);

@@ -16,9 +16,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <locale>
 #include <map>
 #include <numeric>
 #include <optional>
+#include <sstream>
 
 #include "core/vector3.h"
 #include "remeshing/missed_creases.h"
@@ -46,9 +48,10 @@ core::TriangleTree short_creases(const WorkMesh& mesh) {
 class Round {
 public:
     /// `cover`: of the bound on the distance, so far creases may be from the result.
-    Round(const CoarseMesh& mesh, const std::vector<std::uint8_t>& stays, const Judge& judge, const WorkMesh* input,
-          double cover, const RunControl& control)
-        : mesh_(mesh), judge_(judge), input_(input), cover_(cover), control_(control) {
+    Round(const CoarseMesh& mesh, const std::vector<std::uint8_t>& stays, const Judge& judge,
+          const SubdivisionRule& rule, double cover, const RunControl& control)
+        : mesh_(mesh), judge_(judge), input_(rule.input), error_(rule.error), cover_(cover), control_(control) {
+        const WorkMesh* input = rule.input;
         for (const std::uint8_t s : stays) treatments_.push_back(s != 0 ? Treatment::coarse : Treatment::whole);
         if (input != nullptr && !(input->minor_edges.empty() && input->minor_corners.empty()))
             short_creases_.emplace(short_creases(*input));
@@ -66,14 +69,15 @@ public:
         bool is_full = true;
         for (int look = 0; look < most_looks; ++look) {
             if (is_full) std::fill(has_changed_.begin(), has_changed_.end(), 1);
-            is_missing_creases_ = is_far_off_ = false;
+            is_apart_ = is_far_off_ = false;
             std::vector<Index> broken = find_broken();
             if (control_.cancelled()) return result_;
             if (broken.empty() && is_full) broken = find_missed_creases();
+            if (broken.empty() && is_full) broken = find_far();
             std::fill(has_changed_.begin(), has_changed_.end(), 0);
             const bool reacts = react(broken, look >= patience);
             if (is_full && !reacts) {
-                if (is_missing_creases_) return std::nullopt;
+                if (is_apart_) return std::nullopt;
                 break;
             }
             is_full = !reacts;
@@ -216,19 +220,37 @@ private:
         if (input_ == nullptr) return missed;
         constexpr double all = std::numeric_limits<double>::infinity();
         const double farthest = add_missed_creases(*input_, judge_, result_, all, missed);
-        if (farthest <= 0.95 * cover_ * reach_of(*input_, judge_, result_)) return missed;
-        PolygonMesh polygons{result_.points, {}, result_.offsets};
-        for (const Index v : result_.corners) polygons.corners.push_back(VertexId{v});
-        DistanceOptions options;
-        options.samples = 10000;
-        const double bound =
-            measure_distance(polygons, make_polygon_mesh(judge_.input), options, control_).hausdorff_bound;
-        const double limit = std::max(cover_ * bound, 0.9e-6 * judge_.diagonal);
+        double limit = 0.95 * error_;
+        if (error_ == 0.0) {
+            if (farthest <= 0.95 * cover_ * reach_of(*input_, judge_, result_)) return missed;
+            DistanceOptions options;
+            options.samples = 10000;
+            const double bound =
+                measure_distance(as_polygons(), make_polygon_mesh(judge_.input), options, control_).hausdorff_bound;
+            limit = std::max(cover_ * bound, 0.9e-6 * judge_.diagonal);
+        }
         if (farthest > limit) add_missed_creases(*input_, judge_, result_, limit, missed);
-        is_missing_creases_ = !missed.empty();
+        is_apart_ = !missed.empty();
         is_far_off_ = farthest > 4.0 * limit;
         for (Index& q : missed) q = result_.parent(q);
         return missed;
+    }
+
+    /// Polygons of the round where the error is not kept.
+    std::vector<Index> find_far() {
+        std::vector<Index> far;
+        if (error_ == 0.0) return far;
+        constexpr std::uint64_t pieces = 400000;
+        for (const FarPlace& place :
+             find_far_places(as_polygons(), make_polygon_mesh(judge_.input), error_, pieces, control_))
+            far.push_back(result_.parent(place.is_on_first ? place.polygon : place.nearest));
+        is_apart_ = !far.empty();
+        return far;
+    }
+    PolygonMesh as_polygons() const {
+        PolygonMesh polygons{result_.points, {}, result_.offsets};
+        for (const Index v : result_.corners) polygons.corners.push_back(VertexId{v});
+        return polygons;
     }
 
     /// Holds the corners of these polygons and of those around back; what is held already is treated otherwise. False:
@@ -317,7 +339,7 @@ private:
     const CoarseMesh& mesh_;
     const Judge& judge_;
     const WorkMesh* input_;
-    double cover_;
+    double error_, cover_;
     const RunControl& control_;
     std::optional<core::TriangleTree> short_creases_;
     std::vector<Index> names_;                ///< of the mesh's vertices where copies are one, else empty
@@ -330,45 +352,58 @@ private:
     std::vector<double> part_;  ///< per vertex, of the way from flat to smooth
     std::vector<int> tries_;
     std::vector<std::uint8_t> has_changed_;  ///< per vertex, since it was looked at
-    bool is_missing_creases_ = false;
-    bool is_far_off_ = false;  ///< those: halfway back will not do
+    bool is_apart_ = false;                  ///< something is too far away: a crease, or all else
+    bool is_far_off_ = false;                ///< so far that halfway back will not do
     CoarseMesh result_;
 };
 
 }  // namespace
 
-std::string describe(const SubdivisionReport& report, std::uint64_t rounds, const std::string& place) {
-    std::string text;
-    if (report.rounds < rounds)
-        text = std::to_string(report.rounds) + " rounds of subdivision, not " + std::to_string(rounds);
-    if (report.coarse == 0) return text;
-    return text + (text.empty() ? "" : ", and ") + std::to_string(report.coarse) +
-           (report.coarse == 1 ? " face is" : " faces are") +
-           " not subdivided in every round: pieces would turn away or meet others, first near " + place;
+void give_report(const SubdivisionReport& report, std::uint64_t rounds, RemeshStatistics& statistics) {
+    statistics.subdivision_rounds = report.rounds;
+    statistics.held_vertices = report.held;
+    statistics.coarse_faces = report.coarse;
+    if (report.rounds == rounds && report.coarse == 0) return;
+    std::ostringstream note;
+    note.imbue(std::locale::classic());
+    if (report.rounds < rounds) note << report.rounds << " rounds of subdivision, not " << rounds;
+    if (report.rounds < rounds && report.coarse > 0) note << ", and ";
+    if (report.coarse > 0)
+        note << report.coarse << (report.coarse == 1 ? " face is" : " faces are")
+             << " not subdivided in every round: pieces would turn away, meet others or be too far, first near ("
+             << report.place.x << ", " << report.place.y << ", " << report.place.z << ")";
+    statistics.notes.push_back(note.str());
 }
 
-CoarseMesh subdivide_soundly(const CoarseMesh& mesh, std::uint64_t rounds, const Judge& judge,
-                             SubdivisionReport& report, const RunControl& control, const WorkMesh* input) {
+CoarseMesh subdivide_soundly(const CoarseMesh& mesh, const SubdivisionRule& rule, const Judge& judge,
+                             SubdivisionReport& report, const RunControl& control) {
     report = {};
     CoarseMesh now = mesh;
     std::vector<std::uint8_t> stays(mesh.polygon_count(), 0), is_coarse = stays;
     std::vector<Index> origins(mesh.polygon_count());  // polygons of the mesh, per polygon now
     std::iota(origins.begin(), origins.end(), 0U);
     std::vector<std::uint8_t> is_held;
-    for (; report.rounds < rounds && !control.cancelled(); ++report.rounds) {
-        const double cover = 0.94 * std::pow(0.85, static_cast<double>(rounds - report.rounds - 1));
-        Round round(now, stays, judge, input, cover, control);
-        std::optional<CoarseMesh> next = round.run();
+    for (; report.rounds < rule.rounds && !control.cancelled(); ++report.rounds) {
+        // Later rounds lower the distance, and with it what is allowed of creases: if that leaves no way, they may
+        // fail.
+        constexpr double allowed = 0.94;
+        const double share = std::pow(0.85, static_cast<double>(rule.rounds - report.rounds - 1));
+        std::optional<Round> round(std::in_place, now, stays, judge, rule, share * allowed, control);
+        std::optional<CoarseMesh> next = round->run();
+        if (!next && share < 1.0 && !control.cancelled()) {
+            round.emplace(now, stays, judge, rule, allowed, control);
+            next = round->run();
+        }
         for (Index q = 0; q < now.polygon_count(); ++q)
-            if (round.stays(q)) is_coarse[origins[q]] = 1;
+            if (round->stays(q)) is_coarse[origins[q]] = 1;
         if (!next) break;
         is_held.resize(next->points.size(), 0);
-        for (Index v = 0; v < is_held.size(); ++v) is_held[v] |= round.is_held(v) ? 1 : 0;
+        for (Index v = 0; v < is_held.size(); ++v) is_held[v] |= round->is_held(v) ? 1 : 0;
         std::vector<Index> parents;
         std::vector<std::uint8_t> stay;
         for (std::size_t q = 0; q < next->polygon_count(); ++q) {
-            const Index parent = round.parent(next->parent(q));
-            stay.push_back(round.stays(parent) ? 1 : 0);
+            const Index parent = round->parent(next->parent(q));
+            stay.push_back(round->stays(parent) ? 1 : 0);
             parents.push_back(origins[parent]);
         }
         now = std::move(*next);

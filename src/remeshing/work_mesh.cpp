@@ -271,22 +271,30 @@ void find_twins(WorkMesh& work) {
     }
 }
 
-/// Which edges are guides. Those that are no edges of the input are refused.
-void find_guides(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& options) {
-    if (options.guides.empty()) return;
+/// Creases and guides that are no edges of the input are refused.
+void check_marks(const TriangleMesh& mesh, const RemeshOptions& options) {
+    if (options.guides.empty() && options.features.empty()) return;
     const std::vector<Index> first = joined_points(mesh);
     std::unordered_set<std::uint64_t> there;
     for (const Triangle& t : mesh.triangles)
         for (std::size_t i = 0; i < 3; ++i)
             there.insert(pair_key(first[index_of(t[i])], first[index_of(t[(i + 1) % 3])]));
-    for (std::size_t i = 0; i < options.guides.size(); ++i) {
-        const auto [a, b] = options.guides[i];
-        if (!there.contains(pair_key(first[index_of(a)], first[index_of(b)])))
+    const auto check = [&](const std::vector<Edge>& edges, const std::string& name, const char* where) {
+        for (std::size_t i = 0; i < edges.size(); ++i) {
+            const auto [a, b] = edges[i];
+            if (there.contains(pair_key(first[index_of(a)], first[index_of(b)]))) continue;
             refuse(DefectKind::index_out_of_range, ElementKind::vertex, index_of(a), mesh.positions[index_of(a)],
-                   "guide " + std::to_string(i + 1) + " joins vertices " + std::to_string(index_of(a) + 1ULL) +
-                       " and " + std::to_string(index_of(b) + 1ULL) +
-                       ", which share no edge: guides run along edges of the input");
-    }
+                   name + " " + std::to_string(i + 1) + " joins vertices " + std::to_string(index_of(a) + 1ULL) +
+                       " and " + std::to_string(index_of(b) + 1ULL) + ", which share no edge: " + where +
+                       " edges of the input");
+        }
+    };
+    check(options.features, "tagged edge", "creases are");
+    check(options.guides, "guide", "guides run along");
+}
+
+void find_guides(WorkMesh& work) {
+    if (work.guides.empty()) return;
     work.is_guide.resize(work.edge_halfedges.size());
     for (Index e = 0; e < work.is_guide.size(); ++e) {
         const Index h = work.edge_halfedges[e];
@@ -520,7 +528,7 @@ double longest_edge(const WorkMesh& work, double count) {
 }
 
 /// From triangles to all of it.
-void connect(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
+void connect(WorkMesh& work, const RemeshOptions& options, RemeshStatistics& statistics) {
     statistics.non_manifold_edges = pair_halfedges(work);
     orient(work, statistics);
     pair_halfedges(work);
@@ -528,7 +536,7 @@ void connect(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& opti
     number_edges(work);
     find_twins(work);
     work.is_cut_open = statistics.split_vertices > 0;
-    find_guides(work, mesh, options);
+    find_guides(work);
     find_components(work);
     lay_out(work);
     work.diagonal = box_diagonal(work);
@@ -550,6 +558,7 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     statistics.input_vertices = mesh.positions.size();
     statistics.input_triangles = mesh.triangles.size();
     take_faces(soup, mesh, options, statistics);
+    check_marks(mesh, options);
     // Needles come apart into ever more of them.
     const double most_faces = count == 0.0 ? 1e300 : 4.0 * static_cast<double>(soup.faces.size()) + 20.0 * count;
     const auto input_vertices = static_cast<Index>(mesh.positions.size());
@@ -558,7 +567,7 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     for (int round = 0;; ++round) {
         WorkMesh work = soup;
         statistics = before;
-        connect(work, mesh, options, statistics);
+        connect(work, options, statistics);
         const std::unordered_set<std::uint64_t> edges = edges_beyond_tips(work);
         if (edges.empty() || round == most_rounds) return work;
         halve_edges(soup, input_vertices, [&](Index a, Index b) {

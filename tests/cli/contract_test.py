@@ -529,6 +529,17 @@ class Remesh(CommandTest):
         self.assertIn("topology", report["proved"])
         self.assertTrue(any("merged" in note for note in report["statistics"]["notes"]))
 
+    def test_creases_must_be_edges(self):
+        self.write("across.txt", "1 7\n")
+        self.assertIn("tagged edge 1", self.expect(3, "remesh", "cube.off", "--features", "across.txt"))
+        self.write("line.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nl 1 2\nl 1 3\nl 2 4\n")
+        report = self.report(0, "remesh", "line.obj", "--vertices", "10")
+        self.assertTrue(any("left out" in w["message"] for w in report["warnings"]))
+
+    def test_lines_need_a_format_that_has_fields(self):
+        self.assertIn("--lines", self.expect(2, "remesh", "cube.off", "--lines", "lines.msh"))
+        self.expect_no_strays()
+
     def test_guides_must_be_edges(self):
         self.write("guides.txt", "1 2\n1 99\n")
         self.assertIn("guides.txt", self.expect(3, "remesh", "cube.off", "--guides", "guides.txt"))

@@ -300,6 +300,30 @@ TEST(Remesh, MeetsTheError) {
     EXPECT_LE(measure_distance(result.mesh, polygons, distance).hausdorff, result.statistics.distance_bound);
 }
 
+/// What was asked for is asked of the polygons that are subdivided (a count), or of the result (an error).
+TEST(Remesh, SubdivisionKeepsTheError) {
+    const TriangleMesh input = generators::make_torus(2.0, 0.7, 2000, 1);
+    RemeshOptions options;
+    options.error = Length{0.05, false};
+    options.subdivide = 1;
+    const RemeshResult result = remesh(input, options);
+    expect_closed(result, 0);
+    EXPECT_EQ(result.statistics.subdivision_rounds, 1U);
+    EXPECT_GT(result.statistics.distance_bound, 0.0);
+    EXPECT_LE(result.statistics.distance_bound, 0.05);
+    PolygonMesh polygons{input.positions, {}, {0}};
+    for (const Triangle& t : input.triangles) {
+        polygons.corners.insert(polygons.corners.end(), t.begin(), t.end());
+        polygons.offsets.push_back(static_cast<std::uint32_t>(polygons.corners.size()));
+    }
+    DistanceOptions distance;
+    distance.bound = false;
+    EXPECT_LE(measure_distance(result.mesh, polygons, distance).hausdorff, result.statistics.distance_bound);
+    options.error.reset();
+    options.vertices = 200;
+    EXPECT_NEAR(static_cast<double>(remesh(input, options).statistics.vertices), 800.0, 40.0);
+}
+
 TEST(Remesh, MeetsTheCountAndIsMostlyQuads) {
     for (const std::uint64_t wanted : {300U, 900U}) {
         RemeshOptions options;
@@ -439,6 +463,20 @@ TEST(Remesh, RefusesWhatItCannotDo) {
     both.vertices = 100;
     both.error = Length{1.0, false};
     EXPECT_THROW(remesh(generators::make_box(1.0, 1.0, 1.0), both), InputError);
+    RemeshOptions degree;
+    degree.max_degree = 5;
+    EXPECT_THROW(remesh(generators::make_box(1.0, 1.0, 1.0), degree), InputError);
+    degree.output = RemeshOutput::polygons;
+    EXPECT_EQ(remesh(generators::make_box(1.0, 1.0, 1.0), degree).statistics.vertices, 8U);
+    // A diagonal through the box is no edge of it.
+    const TriangleMesh box = generators::make_box(1.0, 1.0, 1.0);
+    for (std::uint32_t v = 1; v < 8; ++v) {
+        const Point3 across = box.positions[v] - box.positions[0];
+        if (across.x == 0.0 || across.y == 0.0 || across.z == 0.0) continue;
+        RemeshOptions options;
+        options.features.push_back({VertexId{0}, VertexId{v}});
+        EXPECT_THROW(remesh(box, options), InputError);
+    }
 }
 
 TEST(Remesh, CanBeCancelled) {

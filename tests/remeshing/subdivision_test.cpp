@@ -145,7 +145,7 @@ TEST(Subdivision, NeitherFoldsNorMeetsItself) {
         CoarseMesh smooth = subdivide(subdivide(coarse));
         broken_before += find_damage(judge, smooth, {}).polygons.size();
         SubdivisionReport report;
-        CoarseMesh sound = subdivide_soundly(coarse, 2, judge, report, {});
+        CoarseMesh sound = subdivide_soundly(coarse, {2}, judge, report, {});
         EXPECT_EQ(report.rounds, 2U);
         EXPECT_TRUE(find_damage(judge, sound, {}).polygons.empty());
         EXPECT_LT(report.coarse, coarse.polygon_count() / 5);
@@ -173,7 +173,7 @@ TEST(Subdivision, IsLeftOutRatherThanBroken) {
     CoarseMesh broken = subdivide(coarse);
     EXPECT_EQ(find_damage(judge, broken, {}).polygons.size(), 1U);
     SubdivisionReport report;
-    const CoarseMesh sound = subdivide_soundly(coarse, 1, judge, report, {});
+    const CoarseMesh sound = subdivide_soundly(coarse, {1}, judge, report, {});
     EXPECT_EQ(report.rounds, 0U);
     EXPECT_EQ(report.place, coarse.points[0]);
     EXPECT_EQ(report.coarse, 1U);
@@ -194,7 +194,7 @@ TEST(Subdivision, OnlyWhatWouldBreakStaysCoarse) {
     coarse.add_polygon(std::array<Index, 3>{0, 1, 2});
     coarse.add_polygon(std::array<Index, 3>{1, 3, 2});
     SubdivisionReport report;
-    const CoarseMesh sound = subdivide_soundly(coarse, 1, judge, report, {});
+    const CoarseMesh sound = subdivide_soundly(coarse, {1}, judge, report, {});
     EXPECT_EQ(report.rounds, 1U);
     EXPECT_EQ(report.coarse, 1U);
     EXPECT_EQ(report.place, coarse.points[0]);
@@ -205,7 +205,7 @@ TEST(Subdivision, OnlyWhatWouldBreakStaysCoarse) {
     EXPECT_EQ(boundary_sides, 6);
     CoarseMesh again = sound;
     EXPECT_TRUE(find_damage(judge, again, {}).polygons.empty());
-    const CoarseMesh twice = subdivide_soundly(coarse, 2, judge, report, {});
+    const CoarseMesh twice = subdivide_soundly(coarse, {2}, judge, report, {});
     EXPECT_EQ(report.rounds, 2U);
     EXPECT_EQ(euler_characteristic(twice, boundary_sides), 1);
     EXPECT_EQ(std::count(twice.parents.begin(), twice.parents.end(), 0U), 1);
@@ -282,7 +282,7 @@ TEST(Subdivision, CreasesStayCovered) {
     EXPECT_GT(add_missed_creases(work, judge, subdivide(coarse), 1e-3, missed), 0.01);
     for (const std::uint64_t rounds : {2U}) {
         SubdivisionReport report;
-        const CoarseMesh sound = subdivide_soundly(coarse, rounds, judge, report, {}, &work);
+        const CoarseMesh sound = subdivide_soundly(coarse, {rounds, 0.0, &work}, judge, report, {});
         EXPECT_EQ(report.rounds, rounds);
         EXPECT_GT(report.held, 0U);
         EXPECT_LT(add_missed_creases(work, judge, sound, 1e-3, missed), 1e-5);
@@ -326,7 +326,7 @@ TEST(Subdivision, CopiesStayTogether) {
     const core::TriangleTree tree(input.positions, input.triangles);
     const Judge judge{input, tree, 5.0, false, true};
     SubdivisionReport report;
-    const CoarseMesh sound = stitch(subdivide_soundly(coarse, 1, judge, report, {}));
+    const CoarseMesh sound = stitch(subdivide_soundly(coarse, {1}, judge, report, {}));
     EXPECT_EQ(report.rounds, 1U);
     EXPECT_GT(report.held + report.coarse, 0U);
     std::map<std::pair<Index, Index>, int> sides;
