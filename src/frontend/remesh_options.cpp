@@ -73,7 +73,8 @@ constexpr std::array remesh_table{
         Spelled<RemeshOptions>{"DEG", [](const RemeshOptions& o) { return text_of(o.feature_angle_radians / degrees); },
                                [](RemeshOptions& o, std::string_view name, std::string_view text) {
                                    const double value = parse_number(name, text);
-                                   if (!(value >= 0.0 && value <= 180.0)) out_of_range(name, text, "[0, 180]");
+                                   if (!(value > 0.0 && value <= 180.0))
+                                       out_of_range(name, text, "above 0, at most 180");
                                    o.feature_angle_radians = value * degrees;
                                }},
         {},

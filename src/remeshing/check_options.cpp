@@ -20,6 +20,8 @@ void check_options(const RemeshOptions& options) {
         refuse_option("a surface needs four vertices and faces at least");
     if (!(options.isotropy >= 0.0 && options.isotropy <= 1.0)) refuse_option("isotropy must lie in [0, 1]");
     if (!(options.transfer >= 0.0 && options.transfer <= 2.0)) refuse_option("transfer must lie in [0, 2]");
+    if (!(options.feature_angle_radians > 0.0 && options.feature_angle_radians <= 3.1415926535897936))
+        refuse_option("feature_angle must be above 0 and at most 180 degrees");
     if (options.smooth && !(options.smooth->value >= 0.0)) refuse_option("smooth must not be below 0");
     if (!options.guides.empty() && options.smoothing_method != SmoothingMethod::screened)
         refuse_option("guides need the smoothing method screened, which can hold directions fast");

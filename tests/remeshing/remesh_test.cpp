@@ -463,6 +463,9 @@ TEST(Remesh, RefusesWhatItCannotDo) {
     both.vertices = 100;
     both.error = Length{1.0, false};
     EXPECT_THROW(remesh(generators::make_box(1.0, 1.0, 1.0), both), InputError);
+    RemeshOptions angle;
+    angle.feature_angle_radians = 0.0;
+    EXPECT_THROW(remesh(generators::make_box(1.0, 1.0, 1.0), angle), InputError);
     RemeshOptions degree;
     degree.max_degree = 5;
     EXPECT_THROW(remesh(generators::make_box(1.0, 1.0, 1.0), degree), InputError);
