@@ -149,4 +149,16 @@ std::string joined(const std::vector<std::string>& parts) {
     return text;
 }
 
+Json spelled_value(const std::string& name, const std::string& text) {
+    if (text.empty()) return nullptr;
+    const char *begin = text.data(), *end = begin + text.size();
+    std::uint64_t count = 0;
+    const bool is_angle = name.size() > 8 && name.compare(name.size() - 8, 8, "_radians") == 0;
+    if (const auto [stop, error] = std::from_chars(begin, end, count); !is_angle && error == std::errc() && stop == end)
+        return count;
+    double value = 0.0;
+    if (const auto [stop, error] = std::from_chars(begin, end, value); error != std::errc() || stop != end) return text;
+    return is_angle ? value * std::numbers::pi / 180.0 : value;
+}
+
 }  // namespace certa::cli

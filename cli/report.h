@@ -49,6 +49,10 @@ std::string counted(std::size_t count, const std::string& noun);
 std::string counted(std::size_t count, const std::string& singular, const std::string& plural);
 std::string joined(const std::vector<std::string>& parts);
 
+/// What an option with a spelling of its own says: a number where the text is one (angles, which are spelled in
+/// degrees, in the radians that their names promise), nothing where it is empty, else the text.
+Json spelled_value(const std::string& name, const std::string& text);
+
 /// Options as resolved: lengths in the input's unit beside what was given.
 template <class Options>
 Json to_json(std::span<const frontend::Option<Options>> table, const Options& options, double diagonal) {
@@ -65,8 +69,7 @@ Json to_json(std::span<const frontend::Option<Options>> table, const Options& op
                 } else if constexpr (std::is_same_v<Kind, frontend::Choice<Options>>) {
                     result[name] = frontend::value_of(option, options);
                 } else if constexpr (std::is_same_v<Kind, frontend::Spelled<Options>>) {
-                    const std::string value = member.get(options);
-                    result[name] = value.empty() ? Json(nullptr) : Json(value);
+                    result[name] = spelled_value(name, member.get(options));
                 } else {
                     result[name] = options.*member;
                 }

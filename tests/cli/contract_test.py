@@ -526,6 +526,9 @@ class Remesh(CommandTest):
         report = self.report(0, "remesh", "soup.off", "--vertices", "120", "-o", "few.obj")
         self.assertEqual(report["statistics"]["merged_points"], 24 * 12 * 6 - 24 * 12)
         self.assertEqual(report["statistics"]["unused_vertices"], 0)
+        self.assertEqual(report["options"]["vertices"], 120)
+        self.assertIsNone(report["options"]["error"])
+        self.assertAlmostEqual(report["options"]["feature_angle_radians"], math.radians(40))
         self.assertIn("topology", report["proved"])
         self.assertTrue(any("merged" in note for note in report["statistics"]["notes"]))
 
