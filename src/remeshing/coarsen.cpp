@@ -17,11 +17,11 @@
 namespace certa::remeshing {
 namespace {
 
-constexpr double odd_cost = 0.3;        ///< of a polygon with an odd number of corners, in costs of a mean one
-constexpr double least_cosine = 0.8;    ///< between the normals of a polygon before and after
-constexpr double most_reflex = 0.15;    ///< sine by which a corner may turn the other way
-constexpr double most_pointed = 0.995;  ///< cosine of the least angle of a corner
-constexpr std::size_t most_sides = 7;   ///< at one vertex
+constexpr double odd_cost = 0.3;       ///< of a polygon with an odd number of corners, in costs of a mean one
+constexpr double least_cosine = 0.8;   ///< between the normals of a polygon before and after
+constexpr double most_reflex = 0.15;   ///< sine by which a corner may turn the other way
+constexpr double least_area = 0.2;     ///< of what a polygon had, that it has to keep
+constexpr std::size_t most_sides = 7;  ///< at one vertex
 
 /// Second derivatives of the height, in space.
 using Tensor = std::array<double, 6>;  // xx, yy, zz, xy, yz, zx
@@ -296,12 +296,12 @@ private:
         return sum;
     }
     static bool is_sound(const Corners& before, const Corners& after) {
-        const Point3 normal = unit(normal_of(after));
-        if (dot(normal, unit(normal_of(before))) < least_cosine) return false;
+        const Point3 was = normal_of(before), is = normal_of(after), normal = unit(is);
+        if (dot(normal, unit(was)) < least_cosine || norm(is) < least_area * norm(was)) return false;
         for (std::size_t i = 0; i < after.size(); ++i) {
             const Point3 in = unit(after[i] - after[(i + after.size() - 1) % after.size()]);
             const Point3 out = unit(after[(i + 1) % after.size()] - after[i]);
-            if (dot(cross(in, out), normal) < -most_reflex || dot(in, out) < -most_pointed) return false;
+            if (dot(cross(in, out), normal) < -most_reflex) return false;
         }
         return true;
     }

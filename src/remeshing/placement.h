@@ -11,7 +11,7 @@ namespace certa::remeshing {
 
 struct PlacementOptions {
     std::uint32_t rounds = 12;       ///< of closest points and least squares ...
-    std::uint32_t peak_rounds = 12;  ///< ... and then reweighted towards the largest distances
+    std::uint32_t peak_rounds = 20;  ///< ... and then reweighted towards the largest distances
     double peak_power = 6.0;         ///< the mean of the distances' power that these lower
     double anchor = 0.001;           ///< stiffness against sliding along the surface, relative to that across it
     std::uint32_t samples_per_triangle = 9;

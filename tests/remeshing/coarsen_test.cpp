@@ -131,7 +131,7 @@ TEST(Coarsen, VerticesBeyondAndCornersStay) {
     EXPECT_TRUE(coarsen(tree, {0.01, 0.01}, 10, 0, mesh).empty());
     // All that there is: no more vertices go than may.
     const auto merged = coarsen(tree, {1.0, 1.0}, 10000, side * side, mesh);
-    EXPECT_LT(merged.size(), side * side - 4U);
+    EXPECT_LE(merged.size(), side * side - 4U);
     EXPECT_EQ(characteristic_of(mesh), 1);
     for (const Index v : {0U, side - 1, side * (side - 1), side * side - 1})
         EXPECT_GT(std::count(mesh.corners.begin(), mesh.corners.end(), v), 0);
