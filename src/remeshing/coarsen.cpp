@@ -161,8 +161,9 @@ struct Candidate {
 
 class Coarsener {
 public:
-    Coarsener(const core::TriangleTree& tree, const ArrangementRule& rule, Index most, CoarseMesh& mesh)
-        : tree_(tree), most_(most), mesh_(mesh), contraction_(mesh, rule) {
+    Coarsener(const core::TriangleTree& tree, const ArrangementRule& rule, std::span<const std::uint8_t> is_free,
+              CoarseMesh& mesh)
+        : tree_(tree), is_free_(is_free), mesh_(mesh), contraction_(mesh, rule) {
         stamps_.assign(mesh.points.size(), 0);
         double area = 0.0, squares = 0.0;
         for (Index q = 0; q < mesh.polygon_count(); ++q) {
@@ -255,8 +256,9 @@ private:
         });
     }
 
+    bool may_move(Index v) const { return v < is_free_.size() && is_free_[v] != 0; }
     void push(Index v, Index into) {
-        if (v >= most_ || into >= most_) return;
+        if (!may_move(v) || !may_move(into)) return;
         const bool is_free = mesh_.kinds[v] == VertexKind::smooth && mesh_.kinds[into] == VertexKind::smooth;
         Candidate candidate{0.0, v, into, false, stamps_[v] + stamps_[into], mesh_.points[into]};
         if (is_free) candidate.place = 0.5 * (mesh_.points[v] + mesh_.points[into]);
@@ -339,7 +341,7 @@ private:
     }
 
     const core::TriangleTree& tree_;
-    const Index most_;
+    const std::span<const std::uint8_t> is_free_;
     CoarseMesh& mesh_;
     Contraction contraction_;
     std::vector<Tensor> tensors_;               ///< per polygon, as it was at first
@@ -353,8 +355,8 @@ private:
 }  // namespace
 
 std::vector<MergedVertex> coarsen(const core::TriangleTree& tree, const ArrangementRule& rule, std::size_t count,
-                                  Index most, CoarseMesh& mesh) {
-    return Coarsener(tree, rule, most, mesh).run(count);
+                                  std::span<const std::uint8_t> is_free, CoarseMesh& mesh) {
+    return Coarsener(tree, rule, is_free, mesh).run(count);
 }
 
 }  // namespace certa::remeshing

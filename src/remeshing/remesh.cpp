@@ -68,6 +68,7 @@ struct Draft {
     PolygonCounts counts{};
     std::size_t samples = 0;      ///< that polygons are triangulated around
     std::vector<Point3> flaws{};  ///< places that no refinement has mended
+    std::size_t broken = 0;       ///< faces whose polygons will be mended
 
     Layout layout() const { return {network, graph, faces, nodes, merged, open, filled}; }
 };
@@ -317,6 +318,7 @@ Draft Remesher::draft(double error) {
         watch_.stage("arrangement");
         if (flaws.empty() && !control_.cancelled()) {
             std::vector<Index> broken = broken_faces(d);
+            d.broken = broken.size();
             watch_.stage("damage");
             constexpr double dear = 30.0;  // vertices for a face that is mended no more
             if (before && (broken.size() >= were_broken ||
@@ -351,16 +353,30 @@ double Remesher::count_of(const Draft& draft) {
         (options_.output == RemeshOutput::polygons ? draft.polygons : cut(draft.polygons)).polygon_count());
 }
 
-/// A few vertices too many are those that matter least.
+/// A few vertices too many are those that matter least. Where that breaks polygons, they stay as they were.
 void Remesher::trim(Draft& d, double wanted) {
-    for (int round = 0; round < 3; ++round) {
-        const double count = count_of(d), part = 1.0 - wanted / count;
-        if (count < wanted + 0.5 || part > most_trimmed) return;
-        const double vertices = static_cast<double>(d.polygons.points.size() - d.merged.size());
-        const auto merges = static_cast<std::size_t>(options_.faces ? std::ceil(part * vertices) : count - wanted);
-        append_merged(d.merged, coarsen(*tree_, arrangement_rule(d.error), merges, static_cast<Index>(d.nodes.size()),
-                                        d.polygons));
-        relieve_crowded(d);
+    constexpr int most_tries = 4;
+    if (1.0 - wanted / count_of(d) > most_trimmed) return;
+    std::vector<std::uint8_t> is_free(d.nodes.size(), 1);
+    const CoarseMesh polygons = d.polygons;
+    const std::vector<MergedVertex> merged = d.merged;
+    for (int tries = 0; tries < most_tries && !control_.cancelled(); ++tries) {
+        for (int round = 0; round < 3 && count_of(d) > wanted + 0.5; ++round) {
+            const double count = count_of(d);
+            const auto vertices = static_cast<double>(d.polygons.points.size() - d.merged.size());
+            const double merges = options_.faces ? std::ceil((1.0 - wanted / count) * vertices) : count - wanted;
+            append_merged(d.merged, coarsen(*tree_, arrangement_rule(d.error), static_cast<std::size_t>(merges),
+                                            is_free, d.polygons));
+            relieve_crowded(d);
+        }
+        const std::vector<Index> broken = broken_faces(d);
+        if (broken.size() <= d.broken) break;
+        d.polygons = polygons, d.merged = merged;
+        for (const Index f : broken)
+            for (const Index h : d.faces[f])
+                if (const auto at = std::lower_bound(d.nodes.begin(), d.nodes.end(), d.graph.tail(h));
+                    at != d.nodes.end() && *at == d.graph.tail(h))
+                    is_free[static_cast<std::size_t>(at - d.nodes.begin())] = 0;
     }
     watch_.stage("trimming");
 }
@@ -374,7 +390,10 @@ void Remesher::search(double wanted) {
 /// gets more lines for fewer of the other. Somewhat too many will do, see `trim`.
 void Remesher::find_network(double wanted) {
     double best_miss = 1e300;
-    const auto miss_of = [](double off) { return off > 0.0 ? 0.25 * off : -off; };
+    const auto miss_of = [](double off, const Draft& d) {
+        constexpr double of_mending = 0.02;  // mending changes the count again
+        return (off > 0.0 ? 0.25 * off : -off) + (d.broken > 0 ? of_mending : 0.0);
+    };
     int networks = 0;
     /// How far the count is off, as a logarithm; empty: near enough, or cancelled.
     const auto attempt = [&](double error) -> std::optional<double> {
@@ -385,8 +404,8 @@ void Remesher::find_network(double wanted) {
         ++networks;
         const double off = std::log(std::max(count_of(d), 1.0) / wanted);
         const bool whole = d.flaws.empty();
-        if (!best_ || (whole && miss_of(off) < best_miss)) {
-            best_miss = whole ? miss_of(off) : 1e300;
+        if (!best_ || (whole && miss_of(off, d) < best_miss)) {
+            best_miss = whole ? miss_of(off, d) : 1e300;
             best_.emplace(std::move(d));
         }
         if (best_miss < (networks < 4 ? 0.015 : 0.03)) return std::nullopt;
@@ -723,7 +742,7 @@ void Remesher::finish_count() {
         search(std::max(std::exp(aim), 4.0));
         if (control_.cancelled() || !best_) return;
         // Fewer cannot be had: where lines get no polygons, they come closer together.
-        if (off > 0.0 && count_of(*best_) > least_network) break;
+        if (round > 1 && off > 0.0 && count_of(*best_) > least_network) break;
         if (!finish()) break;
     }
     keep(std::move(*kept));

@@ -15,6 +15,8 @@ constexpr Index side = 13;  ///< vertices of a grid
 /// Flat where x < 0; a saddle beyond that bends both ways.
 double height_at(double x, double y, double bend) { return x > 0.0 ? bend * x * (x - y * y) : 0.0; }
 
+const std::vector<std::uint8_t> all(side* side, 1);
+
 /// A grid over [-1, 1]^2; corners and boundary are features.
 CoarseMesh grid(double bend) {
     CoarseMesh mesh;
@@ -85,7 +87,7 @@ TEST(Coarsen, FlatPartsGoFirstAndTheMeshStaysOne) {
     const core::TriangleTree tree = surface(bend);
     for (const std::size_t count : {1U, 8U, 30U}) {
         CoarseMesh mesh = grid(bend);
-        const std::vector<MergedVertex> merged = coarsen(tree, {0.01, 0.01}, count, side * side, mesh);
+        const std::vector<MergedVertex> merged = coarsen(tree, {0.01, 0.01}, count, all, mesh);
         ASSERT_EQ(merged.size(), count);
         EXPECT_EQ(characteristic_of(mesh), 1);
         for (const MergedVertex& m : merged) {
@@ -102,7 +104,7 @@ TEST(Coarsen, FlatPartsGoFirstAndTheMeshStaysOne) {
 TEST(Coarsen, QuadsStayQuads) {
     const core::TriangleTree tree = surface(0.5);
     CoarseMesh mesh = grid(0.5);
-    coarsen(tree, {0.01, 0.01}, 12, side * side, mesh);
+    coarsen(tree, {0.01, 0.01}, 12, all, mesh);
     std::size_t quads = 0;
     for (std::size_t q = 0; q < mesh.polygon_count(); ++q) quads += mesh.polygon(q).size() == 4 ? 1 : 0;
     EXPECT_GE(static_cast<double>(quads), 0.9 * static_cast<double>(mesh.polygon_count()));
@@ -111,7 +113,7 @@ TEST(Coarsen, QuadsStayQuads) {
 TEST(Coarsen, AFaceThatGoesIsKnownToThoseThatTakeItsPart) {
     const core::TriangleTree tree = surface(0.5);
     CoarseMesh mesh = grid(0.5);
-    coarsen(tree, {0.01, 0.01}, 10, side * side, mesh);
+    coarsen(tree, {0.01, 0.01}, 10, all, mesh);
     std::vector<Index> left = mesh.parents;
     std::sort(left.begin(), left.end());
     std::size_t gone = 0;
@@ -128,9 +130,9 @@ TEST(Coarsen, AFaceThatGoesIsKnownToThoseThatTakeItsPart) {
 TEST(Coarsen, VerticesBeyondAndCornersStay) {
     const core::TriangleTree tree = surface(0.5);
     CoarseMesh mesh = grid(0.5);
-    EXPECT_TRUE(coarsen(tree, {0.01, 0.01}, 10, 0, mesh).empty());
+    EXPECT_TRUE(coarsen(tree, {0.01, 0.01}, 10, {}, mesh).empty());
     // All that there is: no more vertices go than may.
-    const auto merged = coarsen(tree, {1.0, 1.0}, 10000, side * side, mesh);
+    const auto merged = coarsen(tree, {1.0, 1.0}, 10000, all, mesh);
     EXPECT_LE(merged.size(), side * side - 4U);
     EXPECT_EQ(characteristic_of(mesh), 1);
     for (const Index v : {0U, side - 1, side * (side - 1), side * side - 1})
