@@ -77,8 +77,11 @@ public:
             std::fill(has_changed_.begin(), has_changed_.end(), 0);
             const bool reacts = react(broken, look >= patience);
             if (is_full && !reacts) {
-                if (is_apart_) return std::nullopt;
-                break;
+                if (!is_apart_) break;
+                // The surface of the round before, at least, if that has not been tried.
+                if (std::all_of(part_.begin(), part_.end(), [](double p) { return p == 0.0; })) return std::nullopt;
+                std::fill(part_.begin(), part_.end(), 0.0);
+                continue;
             }
             is_full = !reacts;
             if (look + 1 == most_looks) return std::nullopt;
@@ -222,12 +225,12 @@ private:
         const double farthest = add_missed_creases(*input_, judge_, result_, all, missed);
         double limit = 0.95 * error_;
         if (error_ == 0.0) {
-            if (farthest <= 0.95 * cover_ * reach_of(*input_, judge_, result_)) return missed;
+            if (farthest <= reach_of(*input_, judge_, result_)) return missed;
             DistanceOptions options;
             options.samples = 10000;
-            const double bound =
-                measure_distance(as_polygons(), make_polygon_mesh(judge_.input), options, control_).hausdorff_bound;
-            limit = std::max(cover_ * bound, 0.9e-6 * judge_.diagonal);
+            const SurfaceDistance found =
+                measure_distance(as_polygons(), make_polygon_mesh(judge_.input), options, control_);
+            limit = std::max({cover_ * found.hausdorff_bound, 0.999 * found.hausdorff, 0.9e-6 * judge_.diagonal});
         }
         if (farthest > limit) add_missed_creases(*input_, judge_, result_, limit, missed);
         is_apart_ = !missed.empty();
