@@ -15,8 +15,9 @@ class Walker {
 public:
     Walker(std::span<const Point3> positions, std::span<const Triangle> triangles);
 
-    /// A point of the mesh to which none across an edge is nearer, found from `start` in a few steps; nothing where
-    /// that takes more of them or ends in a vertex. Several times as fast as a tree where the start is near.
+    /// The nearest point as far as triangle after triangle from `start` on can tell, nearer each time; nothing where
+    /// that takes many steps or ends in a vertex. Right where p is near the mesh and the start near p (not beyond
+    /// centres of curvature), and several times as fast as a tree there.
     std::optional<core::NearestPoint> find(const Point3& p, Index start) const;
 
 private:

@@ -265,6 +265,21 @@ TEST(Arrangement, FacesThatAreNoDisksAreFound) {
     EXPECT_EQ(find_flaws(none, network, none.trace_faces(p.mesh)).patches.size(), 1U);
 }
 
+/// Rims that no line ties to each other: near the smaller one of a patch, one more might.
+TEST(Arrangement, IslandsAreFound) {
+    const Prepared p = prepare(facetted_pipe(16), 3.0);
+    const Network network(p.mesh);
+    const Graph graph = build_graph(network, {0.01, 0.01});
+    const Flaws flaws = find_flaws(graph, network, graph.trace_faces(p.mesh));
+    ASSERT_EQ(flaws.patches.size(), 4U);
+    ASSERT_EQ(flaws.places.size(), 4U);
+    for (std::size_t i = 0; i < 4; ++i) {
+        EXPECT_EQ(flaws.places[i].patch, flaws.patches[i]);
+        EXPECT_GT(flaws.places[i].size, 1.4);
+        EXPECT_LT(flaws.places[i].size, 3.0);
+    }
+}
+
 TEST(Remesh, KeepsGenusAndClosedness) {
     RemeshOptions options;
     options.error = Length{3e-2, true};
