@@ -33,6 +33,7 @@
 #include "remeshing/place_around.h"
 #include "remeshing/placement.h"
 #include "remeshing/polygons.h"
+#include "remeshing/remesher.h"
 #include "remeshing/rescue.h"
 #include "remeshing/share_nodes.h"
 #include "remeshing/sound_subdivision.h"
@@ -43,9 +44,6 @@
 
 namespace certa {
 namespace remeshing {
-namespace {
-
-constexpr double most_trimmed = 0.25;  ///< of what a network has, in vertices or faces
 
 /// The fewest digits that mean this number.
 std::string text_of(double value) {
@@ -54,109 +52,11 @@ std::string text_of(double value) {
 }
 std::string text_of(const Point3& p) { return "(" + text_of(p.x) + ", " + text_of(p.y) + ", " + text_of(p.z) + ")"; }
 
-/// One network and what came of it.
-struct Draft {
-    double knob = 0.0, error = 0.0;  ///< the error asked of lines, and the one that they were given
-    Network network;
-    Graph graph{};
-    std::vector<std::vector<Index>> faces{};
-    std::vector<Index> nodes{};  ///< of the graph, per vertex of the polygons
-    std::vector<MergedVertex> merged{};
-    std::vector<Index> open{};    ///< faces that are no polygons, but have the input's triangles ...
-    std::vector<Index> filled{};  ///< ... or, where they are flat, triangles between their rims
-    CoarseMesh polygons{};
-    PolygonCounts counts{};
-    std::size_t samples = 0;      ///< that polygons are triangulated around
-    std::vector<Point3> flaws{};  ///< places that no refinement has mended
-    std::size_t broken = 0;       ///< faces whose polygons will be mended
+namespace {
 
-    Layout layout() const { return {network, graph, faces, nodes, merged, open, filled}; }
-};
+constexpr double most_trimmed = 0.25;  ///< of what a network has, in vertices or faces
 
-class Remesher {
-public:
-    /// `edge_count`: see build_work_mesh.
-    Remesher(const TriangleMesh& mesh, const RemeshOptions& options, const RunControl& control, double edge_count = 0.0)
-        : options_(options),
-          control_(control),
-          watch_(result_.statistics),
-          mesh_(build_work_mesh(mesh, options, result_.statistics, edge_count)) {
-        input_.positions = mesh_.points;
-        for (const auto& f : mesh_.faces) input_.triangles.push_back({VertexId{f[0]}, VertexId{f[1]}, VertexId{f[2]}});
-        tree_.emplace(input_.positions, input_.triangles);
-        watch_.stage("input");
-    }
-
-    RemeshResult run();
-
-private:
-    bool prepare();
-    SpacingRule rule_of(double error) const;
-    ArrangementRule arrangement_rule(double error) const;
-    double start_error(double count = 0.0);
-    Draft draft(double error);
-    std::vector<Index> open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const;
-    std::vector<Index> broken_faces(const Draft& draft);
-    void merge_ends(Draft& draft, const Spacing& spacing) const;
-    void add_samples(Draft& draft, const Spacing& spacing) const;
-    void relieve_crowded(Draft& draft);
-    double count_of(const Draft& draft);
-    double wanted_count() const {
-        return static_cast<double>(options_.vertices ? *options_.vertices : options_.faces.value_or(0));
-    }
-    double final_count(const CoarseMesh& mesh) const {
-        if (!options_.vertices) return static_cast<double>(mesh.polygon_count());
-        return static_cast<double>(count_vertices(mesh, mesh_.is_cut_open));
-    }
-    void search(double wanted);
-    void find_network(double wanted);
-    void trim(Draft& draft, double wanted);
-    struct Attempt {
-        Draft draft;
-        CoarseMesh mesh;
-        RemeshStatistics statistics;
-    };
-    void meet_error();
-    std::optional<Attempt> attempt_error(double most_far);
-    void give_input_within_error();
-    void keep(Attempt&& attempt);
-    double prove_distance();
-    double refine_where_far(double error, double limit);
-    double far_share(double limit) const;
-    double wanted_error() const { return options_.error.value_or(default_remesh_error).resolve(mesh_.diagonal); }
-    bool finish();
-    MendingRule mending_rule(double error) const;
-    CoarseMesh mended(CoarseMesh mesh, double error);
-    Damage judge_input(CoarseMesh& mesh, Judge& judge);
-    void give_input(double tolerance);
-    void finish_count();
-    void emit(const CoarseMesh& mesh) {
-        given_ = mesh;
-        give_polygons(mesh_.is_cut_open ? stitch(mesh) : mesh, result_);
-    }
-    void subdivide_result();
-    PlacementReport place(CoarseMesh& mesh, const PlacementOptions& options = {});
-    CoarseMesh cut(const CoarseMesh& polygons);
-    void describe_polygons();
-
-    const RemeshOptions& options_;
-    const RunControl& control_;
-    RemeshResult result_;
-    Stopwatch watch_;
-    WorkMesh mesh_;
-    TriangleMesh input_;  ///< the work mesh
-    std::optional<core::TriangleTree> tree_;
-    std::optional<bool> is_embedded_;  ///< the input, once it has been asked
-    DirectionField field_;
-    Caps caps_{mesh_};
-    TraceRule trace_rule_;
-    double balance_ = 1.0;  ///< see SpacingRule
-    CoarseMesh placed_;     ///< what `finish` has made, but for open faces ...
-    CoarseMesh filled_;     ///< ... and with them
-    CoarseMesh given_;      ///< the result, with copies of vertices
-    std::vector<Recut> recuts_;
-    std::optional<Draft> best_;
-};
+}  // namespace
 
 SpacingRule Remesher::rule_of(double error) const {
     SpacingRule rule;
@@ -449,122 +349,6 @@ void Remesher::find_network(double wanted) {
     }
 }
 
-/// Caps the spacing around vertices and triangle centres of either surface that are farther than `limit` from the
-/// other. Returns the share of the input's vertices that are.
-double Remesher::refine_where_far(double error, double limit) {
-    const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_.at(error));
-    const auto lower = [&](Index w) { caps_.lower(w, 0.45 * std::min(spacing.at[0][w], spacing.at[1][w])); };
-    const core::TriangleTree& input = *tree_;
-    const CoarseMesh triangles = make_triangles(filled_, input);
-    std::vector<Triangle> ids;
-    for (std::size_t i = 0; i < triangles.polygon_count(); ++i) {
-        const auto t = triangles.polygon(i);
-        ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
-        const Point3 &a = triangles.points[t[0]], &b = triangles.points[t[1]], &c = triangles.points[t[2]];
-        for (const Point3& p : {(1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
-            const core::NearestPoint nearest = input.find_nearest(p);
-            if (nearest.squared_distance <= limit * limit) continue;
-            for (Index k = 0; k < 3; ++k) lower(mesh_.wedges[3 * nearest.triangle + k]);
-        }
-    }
-    const core::TriangleTree result(triangles.points, ids);
-    std::size_t far = 0;
-    for (Index w = 0; w < mesh_.wedge_count(); ++w) {
-        const Point3& p = mesh_.points[mesh_.wedge_vertices[w]];
-        if (result.find_nearest(p).squared_distance <= limit * limit) continue;
-        lower(w);
-        ++far;
-    }
-    return static_cast<double>(far) / static_cast<double>(mesh_.wedge_count());
-}
-
-/// The share of the placed triangles that are farther from the input than `limit`, and vertices of the input
-/// likewise.
-double Remesher::far_share(double limit) const {
-    const CoarseMesh triangles = make_triangles(filled_, *tree_);
-    std::vector<Triangle> ids;
-    std::size_t far = 0, looked = 0;
-    for (std::size_t i = 0; i < triangles.polygon_count(); ++i, ++looked) {
-        const auto t = triangles.polygon(i);
-        ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
-        const Point3 middle = (1.0 / 3.0) * (triangles.points[t[0]] + triangles.points[t[1]] + triangles.points[t[2]]);
-        far += tree_->find_nearest(middle).squared_distance > limit * limit ? 1 : 0;
-    }
-    const core::TriangleTree result(triangles.points, ids);
-    std::size_t far_below = 0;
-    for (const Point3& p : mesh_.points) far_below += result.find_nearest(p).squared_distance > limit * limit ? 1 : 0;
-    return std::max(static_cast<double>(far) / static_cast<double>(looked),
-                    static_cast<double>(far_below) / static_cast<double>(mesh_.points.size()));
-}
-
-/// The bound that is proved for the result as it stands, for every way to fill its polygons.
-double Remesher::prove_distance() {
-    DistanceOptions options;
-    options.samples = 10000;
-    const SurfaceDistance distance = measure_distance(result_.mesh, make_polygon_mesh(input_), options, control_);
-    watch_.stage("certificate");
-    return result_.statistics.distance_bound = distance.hausdorff_bound;
-}
-
-/// One network, mended so that the error is kept; empty where that would be mending above all.
-std::optional<Remesher::Attempt> Remesher::attempt_error(double most_far) {
-    const double wanted = wanted_error();
-    if (far_share(wanted) > most_far) return std::nullopt;
-    constexpr double tightness = 1.03;  // bounds are proved to within 2 %
-    CoarseMesh mesh = mended(placed_, wanted / tightness);
-    if (control_.cancelled()) return std::nullopt;
-    emit(mesh);
-    if (prove_distance() > wanted) return std::nullopt;
-    return Attempt{std::move(*best_), std::move(mesh), result_.statistics};
-}
-
-/// Lines closer together until mending, which keeps the error by cutting and by triangles of the input, has little
-/// to do. What has the fewest faces counts: whatever is mended has many.
-void Remesher::meet_error() {
-    double error = start_error();
-    constexpr std::array<double, 6> most_far{0.002, 0.002, 0.002, 0.02, 0.02, 0.3};
-    std::optional<Attempt> kept;
-    for (const double far : most_far) {
-        best_.emplace(draft(error));
-        if (control_.cancelled()) return;
-        if (!finish()) break;
-        std::optional<Attempt> next = attempt_error(far);
-        if (control_.cancelled()) return;
-        if (next) {
-            const auto faces = [](const Attempt& attempt) { return double(attempt.mesh.polygon_count()); };
-            if (kept && faces(*next) > 0.98 * faces(*kept)) break;
-            kept.emplace(std::move(*next));
-            const RemeshStatistics& s = kept->statistics;
-            if (double(s.mended_triangles) < 0.05 * faces(*kept) && double(s.cut_faces) < 0.1 * faces(*kept)) break;
-        }
-        // Far in a few places: lines closer together there; far nearly everywhere: a smaller epsilon.
-        const double share = refine_where_far(error, 0.75 * wanted_error());
-        if (share > 0.1 || share == 0.0) error *= 0.7;
-    }
-    const auto faces = kept ? kept->mesh.polygon_count() : 0;
-    if (kept && 2 * kept->statistics.mended_triangles < faces) return keep(std::move(*kept));
-    // Mostly triangles of the input: all of them, thinned out, may be fewer.
-    if (kept) best_.emplace(kept->draft);
-    give_input_within_error();
-    if (control_.cancelled() || !kept) return;
-    if (result_.outcome == Outcome::done && result_.statistics.faces < faces) return;
-    result_.outcome = Outcome::done;
-    keep(std::move(*kept));
-}
-
-/// Nothing else has helped: triangles of the input, as few as the error allows.
-void Remesher::give_input_within_error() {
-    const double wanted = wanted_error();
-    for (const double part : {0.5, 0.2, 1e-4}) {
-        if (control_.cancelled()) return;
-        give_input(part * wanted);
-        if (prove_distance() <= wanted) return;
-    }
-    result_.outcome = Outcome::over_budget;
-    result_.statistics.notes.push_back("the error asked for could not be proved: the bound is " +
-                                       text_of(result_.statistics.distance_bound));
-}
-
 /// Vertices of the input's own curves, for placement along them.
 PlacementReport Remesher::place(CoarseMesh& mesh, const PlacementOptions& options) {
     if (!options_.placement) return {};
@@ -795,7 +579,6 @@ RemeshResult Remesher::run() {
     return std::move(result_);
 }
 
-}  // namespace
 }  // namespace remeshing
 
 RemeshResult remesh(const TriangleMesh& mesh, const RemeshOptions& options, const RunControl& control) {
