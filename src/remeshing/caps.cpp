@@ -43,6 +43,13 @@ void Caps::lower(Index wedge, double cap) {
     lower_to(caps_[wedge], cap);
 }
 
+void Caps::lower_families(Index wedge, double factor, const Spacing& spacing) {
+    for (std::size_t family = 0; family < 2; ++family) {
+        family_caps_[family].resize(mesh_.wedge_count(), 0.0);
+        lower_to(family_caps_[family][wedge], factor * spacing.at[family][wedge]);
+    }
+}
+
 void Caps::refine(const Flaws& flaws, const Graph& graph, const std::vector<std::vector<Index>>& faces,
                   const Spacing& spacing, bool all) {
     std::vector<bool> is_tied(mesh_.patch_count, true);

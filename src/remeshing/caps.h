@@ -26,6 +26,9 @@ public:
     void loosen(double error);
 
     void lower(Index wedge, double cap);
+    /// Lines of each family are to be this close at a wedge: for SpacingRule::most.
+    void lower_families(Index wedge, double factor, const Spacing& spacing);
+    const std::array<std::vector<double>, 2>& of_families() const { return family_caps_; }
     /// Where faces are no polygons: near the places where one more line might do; where there are none, or if that
     /// has not helped before (`all`), all over a patch and around all nodes of a face.
     void refine(const Flaws& flaws, const Graph& graph, const std::vector<std::vector<Index>>& faces,
@@ -41,10 +44,11 @@ private:
                       const Spacing& spacing, double least, std::vector<double>& caps) const;
 
     const WorkMesh& mesh_;
-    std::vector<double> caps_;                  ///< per wedge, 0 where free
-    std::vector<double> patch_caps_;            ///< per patch, of the last refinement
-    std::vector<double> broken_caps_, before_;  ///< per wedge, because of polygons that were broken
-    double last_error_ = 0.0;                   ///< that `loosen` was told
+    std::vector<double> caps_;                        ///< per wedge, 0 where free
+    std::vector<double> patch_caps_;                  ///< per patch, of the last refinement
+    std::vector<double> broken_caps_, before_;        ///< per wedge, because of polygons that were broken
+    std::array<std::vector<double>, 2> family_caps_;  ///< per wedge, because the error was not kept
+    double last_error_ = 0.0;                         ///< that `loosen` was told
     double least_error_ = 0.0;
     double widest_ = 0.0;  ///< below the least error no two lines are farther apart
 };

@@ -97,14 +97,13 @@ void forget_noise(const WorkMesh& mesh, std::vector<Mark>& marks, double least) 
 }
 
 /// Short chains by angle that end in nothing.
-void forget_whiskers(const WorkMesh& mesh, std::vector<Mark>& marks) {
+void forget_whiskers(const WorkMesh& mesh, std::vector<Mark>& marks, double least) {
     std::vector<std::vector<Index>> incident(mesh.points.size());
     for (Index e = 0; e < marks.size(); ++e) {
         if (marks[e] == Mark::none) continue;
         incident[mesh.start_of(mesh.edge_halfedges[e])].push_back(e);
         incident[mesh.end_of(mesh.edge_halfedges[e])].push_back(e);
     }
-    const double least = 0.04 * mesh.diagonal;
     for (Index tip = 0; tip < mesh.points.size(); ++tip) {
         if (incident[tip].size() != 1) continue;
         std::vector<Index> chain;
@@ -206,8 +205,19 @@ void find_features(WorkMesh& mesh, const RemeshOptions& options, RemeshStatistic
     forget_noise(mesh, marks, std::min(0.03 * mesh.diagonal, 12.0 * mesh.mean_edge));
     const std::vector<Mark> all = marks;
     const std::vector<bool> all_corners = CurveBuilder(mesh, all).corners();
-    forget_whiskers(mesh, marks);
-    forget_noise(mesh, marks, 0.12 * mesh.diagonal);
+    const auto forget_short = [&](double longest) {
+        marks = all;
+        forget_whiskers(mesh, marks, longest);
+        forget_noise(mesh, marks, 3.0 * longest);
+    };
+    forget_short(0.04 * mesh.diagonal);
+    // An error is promised for all of them: sides had better follow what is longer. Where there are many, it is noise.
+    const double error = options.error.value_or(default_remesh_error).resolve(mesh.diagonal);
+    constexpr double many = 0.01;  // of all edges
+    std::size_t minor = 0;
+    for (std::size_t e = 0; e < marks.size(); ++e) minor += all[e] != marks[e] ? 1 : 0;
+    if (!options.vertices && !options.faces && double(minor) < many * double(marks.size()))
+        forget_short(std::min(0.04 * mesh.diagonal, 3.0 * error));
     CurveBuilder(mesh, marks).build();
     for (Index e = 0; e < marks.size(); ++e)
         if (all[e] != marks[e]) mesh.minor_edges.push_back(e);

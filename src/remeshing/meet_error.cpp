@@ -7,57 +7,117 @@
 #include <cmath>
 
 #include "core/triangle_tree.h"
+#include "remeshing/cut_far.h"
 #include "remeshing/remesher.h"
 #include "remeshing/templates.h"
 
 namespace certa::remeshing {
 
-/// Caps the spacing around vertices and triangle centres of either surface that are farther than `limit` from the
-/// other. Returns the share of the input's vertices that are.
-double Remesher::refine_where_far(double error, double limit) {
+/// Lines come closer together around polygons that are farther than `limit`: distances go like squares of spacing.
+void Remesher::refine_where_far(double error, double limit) {
     const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_.at(error));
-    const auto lower = [&](Index w) { caps_.lower(w, 0.45 * std::min(spacing.at[0][w], spacing.at[1][w])); };
-    const core::TriangleTree& input = *tree_;
-    const CoarseMesh triangles = make_triangles(filled_, input);
-    std::vector<Triangle> ids;
-    for (std::size_t i = 0; i < triangles.polygon_count(); ++i) {
-        const auto t = triangles.polygon(i);
-        ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
-        const Point3 &a = triangles.points[t[0]], &b = triangles.points[t[1]], &c = triangles.points[t[2]];
-        for (const Point3& p : {(1.0 / 3.0) * (a + b + c), 0.5 * (a + b), 0.5 * (b + c), 0.5 * (c + a)}) {
-            const core::NearestPoint nearest = input.find_nearest(p);
-            if (nearest.squared_distance <= limit * limit) continue;
-            for (Index k = 0; k < 3; ++k) lower(mesh_.wedges[3 * nearest.triangle + k]);
+    for (std::size_t q = 0; q < judged_.polygon_count(); ++q) {
+        if (farthest_[q] <= limit) continue;
+        const double factor = std::clamp(std::sqrt(0.9 * limit / farthest_[q]), 0.5, 0.9);
+        for (const Index v : judged_.polygon(q)) {
+            const Index f = judged_.places[v].face;
+            for (Index c = 3 * f; c < 3 * f + 3; ++c) caps_.lower_families(mesh_.wedges[c], factor, spacing);
         }
     }
-    const core::TriangleTree result(triangles.points, ids);
-    std::size_t far = 0;
-    for (Index w = 0; w < mesh_.wedge_count(); ++w) {
-        const Point3& p = mesh_.points[mesh_.wedge_vertices[w]];
-        if (result.find_nearest(p).squared_distance <= limit * limit) continue;
-        lower(w);
-        ++far;
-    }
-    return static_cast<double>(far) / static_cast<double>(mesh_.wedge_count());
 }
 
-/// The share of the placed triangles that are farther from the input than `limit`, and vertices of the input
-/// likewise.
+/// The share of the placed polygons that are farther from the input than `limit`, as far as samples show.
 double Remesher::far_share(double limit) const {
-    const CoarseMesh triangles = make_triangles(filled_, *tree_);
-    std::vector<Triangle> ids;
-    std::size_t far = 0, looked = 0;
-    for (std::size_t i = 0; i < triangles.polygon_count(); ++i, ++looked) {
-        const auto t = triangles.polygon(i);
-        ids.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
-        const Point3 middle = (1.0 / 3.0) * (triangles.points[t[0]] + triangles.points[t[1]] + triangles.points[t[2]]);
-        far += tree_->find_nearest(middle).squared_distance > limit * limit ? 1 : 0;
+    const auto far = std::count_if(farthest_.begin(), farthest_.end(), [&](double d) { return d > limit; });
+    return static_cast<double>(far) / static_cast<double>(farthest_.size());
+}
+
+/// So far is this share of the placed polygons at most.
+double Remesher::far_quantile(double share) const {
+    std::vector<double> sorted = farthest_;
+    std::sort(sorted.begin(), sorted.end());
+    return sorted[std::min(sorted.size() - 1, static_cast<std::size_t>(share * double(sorted.size())))];
+}
+
+/// Polygons of the mesh as it is placed and cut that are farther than `limit`, or cannot be shown not to be.
+std::vector<Index> Remesher::far_polygons(double limit) const {
+    constexpr std::uint64_t pieces = 200000;
+    PolygonMesh mesh{judged_.points, {}, judged_.offsets};
+    for (const Index v : judged_.corners) mesh.corners.push_back(VertexId{v});
+    std::vector<Index> far;
+    for (const FarPlace& place : find_far_places(mesh, make_polygon_mesh(input_), limit, pieces, control_))
+        far.push_back(place.is_on_first ? place.polygon : place.nearest);
+    std::sort(far.begin(), far.end());
+    far.erase(std::unique(far.begin(), far.end()), far.end());
+    return far;
+}
+
+/// What is too far is placed with the largest distances in mind; then it is cut along its best diagonal, then around
+/// new vertices.
+void Remesher::come_near(double limit) {
+    constexpr int most_rounds = 8;
+    const bool may_add = filled_.points.size() == placed_.points.size();
+    PlacementOptions options;
+    options.rounds = 0;
+    options.peak_rounds = 6;
+    if (!options_.placement || far_share(0.85 * limit) == 0.0) options.peak_rounds = 0;
+    drop_harmful_recuts();
+    CoarseMesh whole = recut(filled_, recuts_);
+    place(whole, options);
+    take_places(whole);
+    // Polygons as lines cut them are no cuts: how they are filled is nobody's business.
+    if (options_.output == RemeshOutput::polygons) return;
+    for (int round = 0; round < most_rounds && !control_.cancelled(); ++round) {
+        const std::vector<Index> far = far_polygons(limit);
+        watch_.stage("certificate");
+        const std::size_t before = judged_.points.size();
+        CoarseMesh mesh = judged_;
+        std::vector<Recut> recuts = cut_far_polygons(mesh, far, *tree_, may_add);
+        if (recuts.empty()) return;
+        mesh = recut(mesh, recuts);
+        for (std::size_t v = before; v < mesh.points.size(); ++v) {
+            placed_.add_vertex(mesh.points[v], mesh.places[v]);
+            filled_.add_vertex(mesh.points[v], mesh.places[v]);
+        }
+        recuts_.insert(recuts_.end(), recuts.begin(), recuts.end());
+        const CoarseMesh unplaced = mesh;
+        const double largest = far_quantile(1.0);
+        options.peak_rounds = 3;
+        if (options_.placement) place(mesh, options);
+        if (!options_.placement || far_quantile(1.0) > 1.02 * largest) {
+            mesh = unplaced;
+            options.peak_rounds = 0;
+            place(mesh, options);
+        }
+        take_places(mesh);
     }
-    const core::TriangleTree result(triangles.points, ids);
-    std::size_t far_below = 0;
-    for (const Point3& p : mesh_.points) far_below += result.find_nearest(p).squared_distance > limit * limit ? 1 : 0;
-    return std::max(static_cast<double>(far) / static_cast<double>(looked),
-                    static_cast<double>(far_below) / static_cast<double>(mesh_.points.size()));
+}
+
+/// Quads from T-nodes that turn away or meet others are as they were; the rest stays as it is.
+void Remesher::drop_harmful_recuts() {
+    Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
+    for (int round = 0; round < 8 && !recuts_.empty() && !control_.cancelled(); ++round) {
+        CoarseMesh looked_at = recut(placed_, recuts_);
+        const std::vector<Index> damaged = judge_input(looked_at, judge).polygons;
+        if (damaged.empty()) return;
+        std::vector<std::uint8_t> is_bad(placed_.points.size(), 0);
+        for (const Index q : damaged)
+            for (const Index v : looked_at.polygon(q)) is_bad[v] = 1;
+        const std::size_t gone = std::erase_if(recuts_, [&](const Recut& r) {
+            return std::any_of(r.after.begin(), r.after.end(), [&](const std::vector<Index>& ring) {
+                return std::all_of(ring.begin(), ring.end(), [&](Index v) { return is_bad[v] != 0; });
+            });
+        });
+        if (gone == 0) return;
+    }
+}
+
+/// Vertices go where those of the mesh are that has been placed.
+void Remesher::take_places(const CoarseMesh& mesh) {
+    filled_.points = mesh.points;
+    filled_.places = mesh.places;
+    std::copy_n(mesh.points.begin(), placed_.points.size(), placed_.points.begin());
+    std::copy_n(mesh.places.begin(), placed_.places.size(), placed_.places.begin());
 }
 
 /// The bound that is proved for the result as it stands, for every way to fill its polygons.
@@ -69,10 +129,9 @@ double Remesher::prove_distance() {
     return result_.statistics.distance_bound = distance.hausdorff_bound;
 }
 
-/// One network, mended so that the error is kept; empty where that would be mending above all.
-std::optional<Remesher::Attempt> Remesher::attempt_error(double most_far) {
+/// One network, mended so that the error is kept; empty where that cannot be proved.
+std::optional<Remesher::Attempt> Remesher::attempt_error() {
     const double wanted = wanted_error();
-    if (far_share(wanted) > most_far) return std::nullopt;
     constexpr double tightness = 1.03;  // bounds are proved to within 2 %
     CoarseMesh mesh = mended(placed_, wanted / tightness);
     if (control_.cancelled()) return std::nullopt;
@@ -85,24 +144,36 @@ std::optional<Remesher::Attempt> Remesher::attempt_error(double most_far) {
 /// to do. What has the fewest faces counts: whatever is mended has many.
 void Remesher::meet_error() {
     double error = start_error();
-    constexpr std::array<double, 6> most_far{0.002, 0.002, 0.002, 0.02, 0.02, 0.3};
+    const double wanted = wanted_error();
+    constexpr int most_rounds = 6;
     std::optional<Attempt> kept;
-    for (const double far : most_far) {
+    const auto cost_of = [](const Attempt& attempt) {
+        double cost = 0.0;
+        for (std::size_t q = 0; q < attempt.mesh.polygon_count(); ++q)
+            cost += attempt.mesh.polygon(q).size() == 3 ? 3.0 : 1.0;
+        return cost;
+    };
+    for (int round = 0; round < most_rounds; ++round) {
         best_.emplace(draft(error));
         if (control_.cancelled()) return;
         if (!finish()) break;
-        std::optional<Attempt> next = attempt_error(far);
-        if (control_.cancelled()) return;
-        if (next) {
-            const auto faces = [](const Attempt& attempt) { return double(attempt.mesh.polygon_count()); };
-            if (kept && faces(*next) > 0.98 * faces(*kept)) break;
-            kept.emplace(std::move(*next));
-            const RemeshStatistics& s = kept->statistics;
-            if (double(s.mended_triangles) < 0.05 * faces(*kept) && double(s.cut_faces) < 0.1 * faces(*kept)) break;
+        const double share = far_share(0.97 * wanted);
+        const double factor = 0.75 * wanted / far_quantile(0.9);
+        if (round == 0 ? factor < 0.9 || factor > 1.2 : round == 1 && share > 0.1) {
+            error *= std::clamp(factor, 0.25, 2.0);
+            continue;
         }
-        // Far in a few places: lines closer together there; far nearly everywhere: a smaller epsilon.
-        const double share = refine_where_far(error, 0.75 * wanted_error());
-        if (share > 0.1 || share == 0.0) error *= 0.7;
+        refine_where_far(error, 0.9 * wanted);
+        if (share > 0.025 && round < 4) continue;
+        come_near(wanted / 1.03);
+        std::optional<Attempt> next = attempt_error();
+        if (control_.cancelled()) return;
+        if (!next) continue;
+        const double cost = cost_of(*next);
+        const RemeshStatistics s = next->statistics;
+        if (kept && cost > 0.98 * cost_of(*kept)) break;
+        kept.emplace(std::move(*next));
+        if (double(s.mended_triangles) + double(s.cut_faces) < 0.03 * double(kept->mesh.polygon_count())) break;
     }
     const auto faces = kept ? kept->mesh.polygon_count() : 0;
     if (kept && 2 * kept->statistics.mended_triangles < faces) return keep(std::move(*kept));

@@ -301,6 +301,7 @@ private:
 
     /// T-nodes near each other cancel where that does no harm and is not too far.
     CoarseMesh join(const CoarseMesh& mesh) const {
+        if (rule_.all_recuts) return recut(mesh, rule_.recuts);
         std::vector<Recut> recuts = rule_.recuts;
         while (!recuts.empty() && !control_.cancelled()) {
             CoarseMesh joined = recut(mesh, recuts), looked_at = joined;

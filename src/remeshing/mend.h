@@ -14,7 +14,8 @@ struct MendingRule {
     double reach = 0.0;           ///< how far a minor crease may be from the result; 0: as far as anything is
     double cover = 0.94;          ///< of the bound on the distance: so far creases may be from the result
     bool all_triangles = false;   ///< neighbours that get more corners become triangles, else also quads
-    std::vector<Recut> recuts = {};  ///< of the polygons, to be done first, where they do no harm
+    std::vector<Recut> recuts = {};  ///< of the polygons, to be done first, where they do no harm ...
+    bool all_recuts = false;         ///< ... or anyway: they have been looked at
 };
 
 struct MendingReport {

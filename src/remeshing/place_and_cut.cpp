@@ -6,7 +6,7 @@
 namespace certa::remeshing {
 
 std::vector<Recut> place_and_cut(const CoarseMesh& polygons, const core::TriangleTree& input, const PlaceMesh& place,
-                                 CoarseMesh& coarse) {
+                                 bool is_quick, CoarseMesh& coarse) {
     constexpr double far_at_first = 4.0, far_in_the_end = 8.0;  // in root mean squares
     std::vector<Recut> recuts;
     PlacementOptions options;
@@ -26,10 +26,11 @@ std::vector<Recut> place_and_cut(const CoarseMesh& polygons, const core::Triangl
     const std::vector<Recut> joins = find_recuts(recut(known, recuts));
     recuts.insert(recuts.end(), joins.begin(), joins.end());
     options = {};
-    options.rounds = 9;
+    options.rounds = is_quick ? 2 : 9;
+    if (is_quick) options.peak_rounds = 5;
     for (int round = 0; round < 2; ++round) {
         cut = recut(coarse, recuts);
-        if (!place_all(far_in_the_end)) break;
+        if (!place_all(far_in_the_end) || is_quick) break;
         options.rounds = 1;
         options.peak_rounds = 4;
     }

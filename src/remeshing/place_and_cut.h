@@ -11,8 +11,9 @@ using PlaceMesh = std::function<PlacementReport(CoarseMesh&, const PlacementOpti
 
 /// Moves the vertices of `coarse`: the polygons and, where faces are open, triangles of the input. A few rounds show
 /// where sides are far off and where T-nodes cancel; the rest is placed as cut then, and once more where sides are far
-/// off after that. Returns how the polygons are to be cut anew.
+/// off after that. Quickly: with less patience, because others will go on placing. Returns how the polygons are to be
+/// cut anew.
 std::vector<Recut> place_and_cut(const CoarseMesh& polygons, const core::TriangleTree& input, const PlaceMesh& place,
-                                 CoarseMesh& coarse);
+                                 bool is_quick, CoarseMesh& coarse);
 
 }  // namespace certa::remeshing

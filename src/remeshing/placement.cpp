@@ -13,6 +13,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 
 #include "core/parallel.h"
@@ -98,7 +99,8 @@ public:
                 round = options_.rounds - 1;
             }
         }
-        take_back_damage();
+        if (all > 0) take_back_damage();
+        report.farthest = farthest_of_polygons();
         report.rms_after = rms_ / scale_, report.largest_after = largest_ / scale_;
         report.rms_before /= scale_, report.largest_before /= scale_;
         if (control_.cancelled()) report.outcome = Outcome::cancelled;
@@ -249,7 +251,10 @@ private:
     }
     void pair_input_samples() {
         std::vector<Triangle> triangles;
-        for (const auto& t : triangles_) triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+        for (std::size_t i = 0; i < nearest_count_; ++i) {
+            const auto& t = triangles_[i];
+            triangles.push_back({VertexId{t[0]}, VertexId{t[1]}, VertexId{t[2]}});
+        }
         const TriangleTree coarse(mesh_.points, triangles);
         const std::size_t first = pairs_.size();
         pairs_.resize(first + input_samples_.size());
@@ -257,8 +262,9 @@ private:
             for (std::size_t s = begin; s < end; ++s) {
                 const auto& [p, face] = input_samples_[s];
                 Index& hint = hints_of_input_samples_[s];
-                const NearestPoint nearest = coarse.find_nearest(p, hint < triangles.size() ? hint : no_index);
+                NearestPoint nearest = coarse.find_nearest(p, hint < triangles.size() ? hint : no_index);
                 hint = nearest.triangle;
+                if (options_.both_diagonals && other_[hint] != no_index) nearest = farther(p, nearest, other_[hint]);
                 Pair& pair = pairs_[first + s];
                 pair.triangle = nearest.triangle;
                 pair.w = nearest.weights;
@@ -267,6 +273,19 @@ private:
                 pair.weight *= 0.5 / double(surface_samples_);
             }
         });
+    }
+    /// The nearest point, or that on the quad's other two triangles, whichever is farther.
+    NearestPoint farther(const Point3& p, const NearestPoint& nearest, Index first) const {
+        NearestPoint best;
+        best.squared_distance = std::numeric_limits<double>::infinity();
+        for (const Index t : {first, first + 1}) {
+            const auto& c = triangles_[t];
+            NearestPoint other =
+                core::find_nearest_on_triangle(p, mesh_.points[c[0]], mesh_.points[c[1]], mesh_.points[c[2]]);
+            other.triangle = t;
+            if (other.squared_distance < best.squared_distance) best = other;
+        }
+        return best.squared_distance > nearest.squared_distance ? best : nearest;
     }
     void fill(Pair& pair, const Point3& coarse, const Point3& input, double distance, const Point3& normal) const {
         pair.normal = normal;
@@ -282,10 +301,12 @@ private:
 
     /// All pairs for the mesh as it is, and the objective.
     void measure(double power) {
-        triangles_ = triangulate(mesh_, *tree_);
+        triangles_ = triangulate(mesh_, *tree_, &polygon_of_);
+        nearest_count_ = triangles_.size();
+        if (options_.both_diagonals) add_other_diagonals();
         if (lattice_.empty()) {
             lattice_ = lattice(options_.samples_per_triangle);
-            sample_input(triangles_.size() * 6);
+            sample_input(nearest_count_ * 6);
         }
         coarse_areas_.clear(), coarse_normals_.clear();
         for (const auto& t : triangles_) {
@@ -300,6 +321,43 @@ private:
         largest_ = 0.0;
         for (const Pair& pair : pairs_) largest_ = std::max(largest_, pair.distance);
         objective_ = power == 2.0 ? rms_ : power_mean(power);
+    }
+    std::vector<double> farthest_of_polygons() const {
+        std::vector<double> farthest(mesh_.polygon_count(), 0.0);
+        for (const Pair& pair : pairs_) {
+            double& most = farthest[polygon_of_[pair.triangle]];
+            most = std::max(most, pair.distance / scale_);
+        }
+        return farthest;
+    }
+    /// The triangles of quads on the diagonals that are not the nearest, after all others.
+    void add_other_diagonals() {
+        other_.assign(nearest_count_, no_index);
+        std::size_t next = 0;
+        for (std::size_t q = 0; q < mesh_.polygon_count(); ++q) {
+            const auto ring = mesh_.polygon(q);
+            const std::size_t first = next;
+            next += ring.size() - 2;
+            if (ring.size() != 4) continue;
+            const auto& t = triangles_[first];
+            const bool on_02 = std::find(t.begin(), t.end(), ring[0]) != t.end() &&
+                               std::find(t.begin(), t.end(), ring[2]) != t.end() &&
+                               std::find(triangles_[first + 1].begin(), triangles_[first + 1].end(), ring[0]) !=
+                                   triangles_[first + 1].end() &&
+                               std::find(triangles_[first + 1].begin(), triangles_[first + 1].end(), ring[2]) !=
+                                   triangles_[first + 1].end();
+            const std::size_t s = on_02 ? 1 : 0;
+            const std::array<Index, 3> l{ring[s], ring[s + 1], ring[s + 2]}, r{ring[s], ring[s + 2], ring[(s + 3) % 4]};
+            const auto area = [&](const std::array<Index, 3>& c) {
+                return cross(mesh_.points[c[1]] - mesh_.points[c[0]], mesh_.points[c[2]] - mesh_.points[c[0]]);
+            };
+            const Point3 normal =
+                cross(mesh_.points[ring[2]] - mesh_.points[ring[0]], mesh_.points[ring[3]] - mesh_.points[ring[1]]);
+            if (dot(area(l), normal) <= 0.0 || dot(area(r), normal) <= 0.0) continue;
+            other_[first] = other_[first + 1] = static_cast<Index>(triangles_.size());
+            triangles_.push_back(l), triangles_.push_back(r);
+            polygon_of_.resize(triangles_.size(), static_cast<Index>(q));
+        }
     }
     double power_mean(double power) const {
         double sum = 0.0, largest = 0.0, weights = 0.0;
@@ -319,17 +377,43 @@ private:
         const double before = objective_;
         const std::vector<Point3> step = solve(power);
         if (step.empty()) return false;
-        double length = 1.0;
-        for (int i = 0; i < half_steps; ++i, length *= 0.5) {
-            for (std::size_t v = 0; v < start.size(); ++v) mesh_.points[v] = start[v] + length * step[v];
+        std::vector<double> lengths(start.size(), 1.0);
+        const double scale = largest_;
+        const bool is_local = options_.both_diagonals && power > 2.0;
+        const std::vector<double> shares = is_local ? shares_of_polygons(power, scale) : std::vector<double>{};
+        for (int i = 0; i < half_steps; ++i) {
+            for (std::size_t v = 0; v < start.size(); ++v) mesh_.points[v] = start[v] + lengths[v] * step[v];
             return_to_curves();
             undo_folds(start);
             measure(power);
             if (objective_ < before) return true;
+            shorten(lengths, power, scale, shares);
         }
         mesh_.points = start;
         measure(power);
         return false;
+    }
+
+    /// What each polygon has of the sum that the objective is.
+    std::vector<double> shares_of_polygons(double power, double scale) const {
+        std::vector<double> shares(mesh_.polygon_count(), 0.0);
+        for (const Pair& pair : pairs_)
+            shares[polygon_of_[pair.triangle]] += pair.weight * raise(pair.distance / scale, power);
+        return shares;
+    }
+    /// Half of the step: for peaks, only where a polygon has got worse, lest one place that nothing helps stop all.
+    void shorten(std::vector<double>& lengths, double power, double scale, const std::vector<double>& before) const {
+        if (before.empty()) {
+            for (double& length : lengths) length *= 0.5;
+            return;
+        }
+        const std::vector<double> after = shares_of_polygons(power, scale);
+        std::vector<std::uint8_t> is_worse(lengths.size(), 0);
+        for (std::size_t q = 0; q < after.size(); ++q)
+            if (after[q] > before[q])
+                for (const Index v : mesh_.polygon(q)) is_worse[v] = 1;
+        for (std::size_t v = 0; v < lengths.size(); ++v)
+            if (is_worse[v] != 0) lengths[v] *= 0.4;
     }
 
     using Block = std::array<double, 6>;  // symmetric: xx xy xz yy yz zz
@@ -504,7 +588,7 @@ private:
         std::vector<Index> bad;
         PolygonMesh cut;
         cut.positions = mesh_.points;
-        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+        for (std::size_t t = 0; t < nearest_count_; ++t) {
             const auto& c = triangles_[t];
             for (const Index v : c) cut.corners.push_back(VertexId{v});
             cut.offsets.push_back(static_cast<std::uint32_t>(cut.corners.size()));
@@ -594,6 +678,9 @@ private:
     std::vector<Point3> initial_;
 
     std::vector<std::array<Index, 3>> triangles_;  // of the coarse mesh, in this round
+    std::size_t nearest_count_ = 0;                ///< so many are on the nearest diagonals
+    std::vector<Index> polygon_of_;
+    std::vector<Index> other_;  ///< of those: the first of two on the quad's other diagonal
     std::vector<double> coarse_areas_;
     std::vector<Point3> coarse_normals_;
     std::vector<Sample> lattice_;

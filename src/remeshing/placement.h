@@ -4,6 +4,7 @@
 #include <certa/run_control.h>
 
 #include <span>
+#include <vector>
 
 #include "remeshing/coarse_mesh.h"
 
@@ -15,6 +16,7 @@ struct PlacementOptions {
     double peak_power = 6.0;         ///< the mean of the distances' power that these lower
     double anchor = 0.001;           ///< stiffness against sliding along the surface, relative to that across it
     std::uint32_t samples_per_triangle = 9;
+    bool both_diagonals = false;  ///< quads count as cut along either diagonal: for a bound that holds for both
     std::uint64_t seed = 1;
     Index fixed_from = no_index;  ///< vertices from this one on stay
 };
@@ -22,14 +24,17 @@ struct PlacementOptions {
 struct PlacementReport {
     double rms_before = 0.0, rms_after = 0.0;          ///< of the samples' distances, both ways
     double largest_before = 0.0, largest_after = 0.0;  ///< of the samples
-    std::uint32_t rounds = 0;                          ///< that lowered the objective
-    Outcome outcome = Outcome::done;                   ///< cancelled: the mesh is as after the last whole round
+    std::vector<double> farthest;  ///< per polygon: the largest distance of samples on it, and of those nearest to it
+    std::uint32_t rounds = 0;      ///< that lowered the objective
+    Outcome outcome = Outcome::done;  ///< cancelled: the mesh is as after the last whole round
 };
 
 /// Alternates closest points (samples of either surface on the other) and a linear least-squares step on their
 /// distances along the input's normals. Corners stay where they are; crease and boundary vertices move along their
 /// curve of `features` (edges of the input), on it; a step that would turn a triangle away from the input is halved,
 /// and polygons that end up turned away or meeting others go back towards where they were.
+///
+/// With no rounds at all, only distances are measured.
 ///
 /// Input:      an oriented triangle mesh with unit-size coordinates or any other (scaled inside), its feature edges,
 ///             a coarse mesh with vertices on or near it. mesh.places need not be set; they are set at the end.

@@ -64,6 +64,7 @@ SpacingRule Remesher::rule_of(double error) const {
     rule.isotropy = options_.isotropy;
     rule.transfer = options_.transfer;
     rule.balance = balance_;
+    rule.most = caps_.of_families();
     if (options_.vertices || options_.faces) rule.evening = 0.25;
     if (options_.hyperbolic_spacing) rule.hyperbolic = std::numbers::sqrt2;
     if (options_.isotropic_samples == IsotropicSamples::all) rule.near_umbilics = 0.8;
@@ -77,7 +78,7 @@ ArrangementRule Remesher::arrangement_rule(double error) const {
 }
 
 double Remesher::start_error(double wanted) {
-    if (wanted == 0.0) return 1.4 * wanted_error();
+    if (wanted == 0.0) return 0.8 * wanted_error();
     constexpr double share = 0.68;  // of vertices expected where lines are as far apart as they may: gaps are narrower
     caps_.expect(wanted);
     double error = 4e-3 * mesh_.diagonal;
@@ -350,8 +351,8 @@ void Remesher::find_network(double wanted) {
 }
 
 /// Vertices of the input's own curves, for placement along them.
-PlacementReport Remesher::place(CoarseMesh& mesh, const PlacementOptions& options) {
-    if (!options_.placement) return {};
+PlacementReport Remesher::place(CoarseMesh& mesh, PlacementOptions options) {
+    options.both_diagonals = wanted_count() == 0.0;
     std::vector<FeatureEdge> features;
     for (Index e = 0; e < mesh_.edge_curves.size(); ++e) {
         const Index h = mesh_.edge_halfedges[e];
@@ -364,6 +365,8 @@ PlacementReport Remesher::place(CoarseMesh& mesh, const PlacementOptions& option
     // To the last bit: copies of a corner find each other by it.
     for (std::size_t v = 0; v < before.size(); ++v)
         if (mesh.kinds[v] == VertexKind::corner) mesh.points[v] = before[v];
+    farthest_ = report.farthest;
+    judged_ = mesh;
     watch_.stage("placement");
     return report;
 }
@@ -402,7 +405,7 @@ bool Remesher::finish() {
     // Where nearly all is from the input, there is little to place and much to look at.
     const bool is_mostly_input = coarse.points.size() > 4 * polygons.points.size();
     const bool places = options_.placement && !is_mostly_input;
-    const bool is_cut_anew = options_.output == RemeshOutput::quad_dominant && wanted_count() > 0.0;
+    const bool is_cut_anew = options_.output == RemeshOutput::quad_dominant;
     if (places && options_.output == RemeshOutput::polygons) {
         // Placed as quads and triangles, which say how the polygons are filled.
         CoarseMesh filled = make_quad_dominant(coarse);
@@ -411,9 +414,13 @@ bool Remesher::finish() {
         coarse.places = filled.places;
     } else if (places && is_cut_anew) {
         const auto place_mesh = [&](CoarseMesh& m, const PlacementOptions& options) { return place(m, options); };
-        recuts_ = place_and_cut(polygons, *tree_, place_mesh, coarse);
+        recuts_ = place_and_cut(polygons, *tree_, place_mesh, wanted_count() == 0.0, coarse);
     } else if (places) {
         place(coarse);
+    } else if (wanted_count() == 0.0) {
+        PlacementOptions only_measured;
+        only_measured.rounds = only_measured.peak_rounds = 0;
+        place(coarse, only_measured);
     }
     filled_ = std::move(coarse);
     placed_ = polygons;
@@ -445,6 +452,7 @@ MendingRule Remesher::mending_rule(double error) const {
     if (options_.subdivide > 0) rule.cover = 0.7;  // subdivision lowers the distance, and with it what is allowed
     rule.all_triangles = options_.output == RemeshOutput::triangles;
     rule.recuts = recuts_;
+    rule.all_recuts = error > 0.0;
     return rule;
 }
 

@@ -85,12 +85,17 @@ private:
         RemeshStatistics statistics;
     };
     void meet_error();
-    std::optional<Attempt> attempt_error(double most_far);
+    std::optional<Attempt> attempt_error();
     void give_input_within_error();
     void keep(Attempt&& attempt);
     double prove_distance();
-    double refine_where_far(double error, double limit);
+    void refine_where_far(double error, double limit);
     double far_share(double limit) const;
+    double far_quantile(double share) const;
+    std::vector<Index> far_polygons(double limit) const;
+    void come_near(double limit);
+    void drop_harmful_recuts();
+    void take_places(const CoarseMesh& mesh);
     double wanted_error() const { return options_.error.value_or(default_remesh_error).resolve(mesh_.diagonal); }
     bool finish();
     MendingRule mending_rule(double error) const;
@@ -103,7 +108,7 @@ private:
         give_polygons(mesh_.is_cut_open ? stitch(mesh) : mesh, result_);
     }
     void subdivide_result();
-    PlacementReport place(CoarseMesh& mesh, const PlacementOptions& options = {});
+    PlacementReport place(CoarseMesh& mesh, PlacementOptions options = {});
     CoarseMesh cut(const CoarseMesh& polygons);
     void describe_polygons();
 
@@ -118,10 +123,12 @@ private:
     DirectionField field_;
     Caps caps_{mesh_};
     TraceRule trace_rule_;
-    double balance_ = 1.0;  ///< see SpacingRule
-    CoarseMesh placed_;     ///< what `finish` has made, but for open faces ...
-    CoarseMesh filled_;     ///< ... and with them
-    CoarseMesh given_;      ///< the result, with copies of vertices
+    double balance_ = 1.0;          ///< see SpacingRule
+    CoarseMesh placed_;             ///< what `finish` has made, but for open faces ...
+    CoarseMesh filled_;             ///< ... and with them
+    CoarseMesh given_;              ///< the result, with copies of vertices
+    CoarseMesh judged_;             ///< as it was placed last, and cut ...
+    std::vector<double> farthest_;  ///< ... and how far its polygons are
     std::vector<Recut> recuts_;
     std::optional<Draft> best_;
 };

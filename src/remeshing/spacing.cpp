@@ -133,13 +133,17 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
                 }
         for (Index w = 0; w < caps.size(); ++w)
             if (caps[w] > 0.0) spacing.at[family][w] = std::min(spacing.at[family][w], caps[w]);
+        const std::vector<double>& most = rule.most[family];
+        for (Index w = 0; w < most.size(); ++w)
+            if (most[w] > 0.0) spacing.at[family][w] = std::min(spacing.at[family][w], most[w]);
         limit_growth(mesh, spacing.at[family], rule.growth);
         spacing.wanted[family].resize(raw.size());
         for (Index w = 0; w < mesh.wedge_count(); ++w) {
             const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
             spacing.wanted[family][w] = raw[w] < 0.999 * largest && raw[w] < 4.0 * spacing.at[family][w];
             const bool is_guided = !field.guided.empty() && field.guided[w] == family;
-            if (is_guided || (!caps.empty() && caps[w] > 0.0)) spacing.wanted[family][w] = true;
+            const bool is_capped = (!caps.empty() && caps[w] > 0.0) || (!most.empty() && most[w] > 0.0);
+            if (is_guided || is_capped) spacing.wanted[family][w] = true;
         }
     }
     return spacing;

@@ -16,6 +16,8 @@ struct SpacingRule {
     /// 1/3 has the least mean square for the number of cells, because many cells pay for little where curvature is
     /// high.
     double evening = 0.0;
+    /// Per family and wedge: lines are wanted there and not farther apart than this; 0, or empty: no such bound.
+    std::array<std::vector<double>, 2> most = {};
     double growth = 0.7;  ///< spacing grows by at most this much per length: curvature is not constant over a gap
 };
 

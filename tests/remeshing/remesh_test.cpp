@@ -313,6 +313,9 @@ TEST(Remesh, MeetsTheError) {
     distance.seed = 99;
     distance.bound = false;
     EXPECT_LE(measure_distance(result.mesh, polygons, distance).hausdorff, result.statistics.distance_bound);
+    // Not by cutting warped quads, nor by triangles of the input.
+    EXPECT_EQ(result.statistics.mended_triangles, 0U);
+    EXPECT_GT(double(result.statistics.quads), 0.85 * double(result.statistics.faces));
 }
 
 /// What was asked for is asked of the polygons that are subdivided (a count), or of the result (an error).

@@ -11,6 +11,7 @@
 #include "core/random.h"
 #include "core/vector3.h"
 #include "remeshing/coarse_meshes.h"
+#include "remeshing/cut_far.h"
 #include "remeshing/flat_triangles.h"
 #include "remeshing/join_triangles.h"
 
@@ -263,6 +264,57 @@ TEST(JoinTriangles, IsNotDoneWhereAPolygonIsGone) {
         if (ring.size() == 4 || triangles_of(less) == 0) less.add_polygon(ring, cut.parent(q));
     }
     EXPECT_EQ(recut(less, recuts).corners, less.corners);
+}
+
+/// A valley along x = 1, and two squares at its height 1 that bridge it from x = 0 to x = 2.
+struct Bridge {
+    TriangleMesh valley;
+    CoarseMesh mesh;
+    Bridge() {
+        const auto id = [](std::uint32_t v) { return VertexId{v}; };
+        for (const double y : {-1.0, 3.0})
+            for (const double x : {-1.0, 1.0, 3.0}) valley.positions.push_back({x, y, std::abs(x - 1.0)});
+        valley.triangles = {{id(0), id(1), id(4)}, {id(0), id(4), id(3)}, {id(1), id(2), id(5)}, {id(1), id(5), id(4)}};
+        for (const double y : {0.0, 1.0, 2.0})
+            for (const double x : {0.0, 2.0}) mesh.add_vertex({x, y, 1.0}, {});
+    }
+};
+
+TEST(CutFar, QuadsAreCutAlongADiagonal) {
+    Bridge b;
+    const core::TriangleTree input(b.valley.positions, b.valley.triangles);
+    b.mesh.add_polygon(std::array<Index, 4>{0, 1, 3, 2}, 0);
+    b.mesh.add_polygon(std::array<Index, 4>{2, 3, 5, 4}, 1);
+    const std::vector<Recut> recuts = cut_far_polygons(b.mesh, {1}, input, true);
+    ASSERT_EQ(recuts.size(), 1U);
+    EXPECT_EQ(b.mesh.points.size(), 6U);
+    const CoarseMesh cut = recut(b.mesh, recuts);
+    EXPECT_EQ(cut.polygon_count(), 3U);
+    EXPECT_NEAR(area(cut), 4.0, 1e-12);
+    EXPECT_TRUE(cut_far_polygons(b.mesh, {}, input, true).empty());
+}
+
+TEST(CutFar, TrianglesGetAVertexOnTheInput) {
+    Bridge b;
+    const core::TriangleTree input(b.valley.positions, b.valley.triangles);
+    b.mesh.add_polygon(std::array<Index, 3>{0, 1, 2}, 0);
+    b.mesh.add_polygon(std::array<Index, 4>{1, 3, 5, 2}, 1);
+    EXPECT_TRUE(cut_far_polygons(b.mesh, {0}, input, false).empty());
+    CoarseMesh mesh = b.mesh;
+    const std::vector<Recut> recuts = cut_far_polygons(mesh, {0}, input, true);
+    ASSERT_EQ(recuts.size(), 1U);
+    ASSERT_EQ(mesh.points.size(), 7U);
+    EXPECT_NEAR(mesh.points[6].z, std::abs(mesh.points[6].x - 1.0), 1e-12);
+    const CoarseMesh cut = recut(mesh, recuts);
+    // In the middle of the farthest side: what is beyond a side is cut, too; the boundary has nothing beyond.
+    EXPECT_EQ(recuts[0].before.size(), 2U);
+    EXPECT_EQ(cut.polygon_count(), 5U);
+    // A feature is no side to be split: the vertex is inside of the triangle.
+    b.mesh.feature_edges.push_back({1, 2, 0});
+    const std::vector<Recut> inside = cut_far_polygons(b.mesh, {0}, input, true);
+    ASSERT_EQ(inside.size(), 1U);
+    EXPECT_EQ(inside[0].before.size(), 1U);
+    EXPECT_EQ(inside[0].after.size(), 3U);
 }
 
 TEST(JoinTriangles, SidesFarFromTheInputAreCutAnew) {
