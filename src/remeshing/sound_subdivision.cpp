@@ -64,7 +64,7 @@ public:
 
     /// Empty: nothing could be subdivided.
     std::optional<CoarseMesh> run() {
-        constexpr int most_looks = 60, patience = 25;
+        constexpr int most_looks = 90, patience = 60;
         build();
         bool is_full = true;
         for (int look = 0; look < most_looks; ++look) {
@@ -78,9 +78,11 @@ public:
             const bool reacts = react(broken, look >= patience);
             if (is_full && !reacts) {
                 if (!is_apart_) break;
-                // The surface of the round before, at least, if that has not been tried.
-                if (std::all_of(part_.begin(), part_.end(), [](double p) { return p == 0.0; })) return std::nullopt;
-                std::fill(part_.begin(), part_.end(), 0.0);
+                // Where smoothing elsewhere has lowered the distance that is allowed: all of it back, half of the way
+                // each time; the surface of the round before, at least.
+                const double most = *std::max_element(part_.begin(), part_.end());
+                if (most == 0.0) return std::nullopt;
+                for (double& part : part_) part = most > 0.2 ? 0.5 * part : 0.0;
                 continue;
             }
             is_full = !reacts;
@@ -234,7 +236,7 @@ private:
         }
         if (farthest > limit) add_missed_creases(*input_, judge_, result_, limit, missed);
         is_apart_ = !missed.empty();
-        is_far_off_ = farthest > 4.0 * limit;
+        is_far_off_ = farthest > 2.0 * limit;
         for (Index& q : missed) q = result_.parent(q);
         return missed;
     }
@@ -285,6 +287,7 @@ private:
             has_changed_[v] = 1;
             reacts = true;
         }
+        if (is_apart_) stuck.clear();  // a coarse polygon is where its pieces are
         const std::vector<Index> treated = treat(stuck, hurry);
         if (treated.empty()) {
             treat_copies_alike();
