@@ -173,6 +173,7 @@ void Remesher::meet_error() {
         const RemeshStatistics s = next->statistics;
         if (kept && cost > 0.98 * cost_of(*kept)) break;
         kept.emplace(std::move(*next));
+        if (3 * s.mended_triangles > kept->mesh.polygon_count()) break;  // closer lines have not helped so far either
         if (double(s.mended_triangles) + double(s.cut_faces) < 0.03 * double(kept->mesh.polygon_count())) break;
     }
     const auto faces = kept ? kept->mesh.polygon_count() : 0;
