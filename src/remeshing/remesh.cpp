@@ -366,6 +366,7 @@ PlacementReport Remesher::place(CoarseMesh& mesh, PlacementOptions options) {
     for (std::size_t v = 0; v < before.size(); ++v)
         if (mesh.kinds[v] == VertexKind::corner) mesh.points[v] = before[v];
     farthest_ = report.farthest;
+    rms_ = report.rms_after;
     judged_ = mesh;
     watch_.stage("placement");
     return report;
@@ -429,6 +430,7 @@ bool Remesher::finish() {
         placed_.places[v] = filled_.places[v];
     }
     if (options_.output == RemeshOutput::quad_dominant && recuts_.empty()) recuts_ = find_recuts(placed_);
+    if (places && wanted_count() > 0.0) lower_peaks();
     return true;
 }
 

@@ -95,6 +95,7 @@ private:
     std::vector<Index> far_polygons(double limit) const;
     void come_near(double limit);
     void drop_harmful_recuts();
+    void lower_peaks();
     void take_places(const CoarseMesh& mesh);
     double wanted_error() const { return options_.error.value_or(default_remesh_error).resolve(mesh_.diagonal); }
     bool finish();
@@ -129,6 +130,7 @@ private:
     CoarseMesh given_;              ///< the result, with copies of vertices
     CoarseMesh judged_;             ///< as it was placed last, and cut ...
     std::vector<double> farthest_;  ///< ... and how far its polygons are
+    double rms_ = 0.0;              ///< of that
     std::vector<Recut> recuts_;
     std::optional<Draft> best_;
 };
