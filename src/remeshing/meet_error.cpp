@@ -140,8 +140,8 @@ std::optional<Remesher::Attempt> Remesher::attempt_error() {
     return Attempt{std::move(*best_), std::move(mesh), result_.statistics};
 }
 
-/// Lines closer together until mending, which keeps the error by cutting and by triangles of the input, has little
-/// to do. What has the fewest faces counts: whatever is mended has many.
+/// Epsilon by the distances that placement leaves, then lines closer together around far polygons, then cuts; at last
+/// mending, which keeps the error by triangles of the input. The fewest faces count, triangles three times.
 void Remesher::meet_error() {
     double error = start_error();
     const double wanted = wanted_error();
@@ -157,6 +157,8 @@ void Remesher::meet_error() {
         best_.emplace(draft(error));
         if (control_.cancelled()) return;
         if (!finish()) break;
+        if (control_.cancelled()) return;
+        if (farthest_.empty()) break;  // no polygons
         const double share = far_share(0.97 * wanted);
         const double factor = 0.75 * wanted / far_quantile(0.9);
         if (round == 0 ? factor < 0.9 || factor > 1.2 : round == 1 && share > 0.1) {
