@@ -68,8 +68,14 @@ std::vector<Index> Contraction::changed_by(Index v, Index into) const {
     const Index quad = is_side ? no_index : quad_between(v, into);
     if (is_side ? !may_merge_side(v, into) : quad == no_index) return {};
     std::vector<Index> changed;
-    for (const Index q : around_[v])
-        if (q != quad && (rings_[q].size() > 3 || !contains(rings_[q], into))) changed.push_back(q);
+    std::size_t left = around_[into].size();  // polygons of the vertex that both become
+    for (const Index q : around_[v]) {
+        const bool has_both = contains(rings_[q], into), goes = q == quad || (has_both && rings_[q].size() == 3);
+        if (!goes) changed.push_back(q);
+        left = left + (has_both ? 0 : 1) - (goes ? 1 : 0);
+    }
+    // Two polygons around a vertex have the same corners there: cut, they may be the same.
+    if (mesh_.kinds[into] != VertexKind::boundary && left < 3 && left < around_[into].size()) return {};
     return changed;
 }
 
@@ -122,7 +128,8 @@ std::optional<Contraction::CurveSide> Contraction::join_sides(Index v, Index int
 /// Whether a polygon at x may go whose side from v to x becomes one with another: the middle of four polygons or more,
 /// and on features what has a polygon beyond that side.
 bool Contraction::may_lose_polygon(Index x, Index v) const {
-    return mesh_.kinds[x] == VertexKind::smooth ? around_[x].size() >= 4 : !is_feature_side(x, v);
+    if (mesh_.kinds[x] == VertexKind::boundary) return around_[x].size() >= 2 && !is_feature_side(x, v);
+    return around_[x].size() >= 4 && !is_feature_side(x, v);
 }
 
 bool Contraction::may_merge_side(Index v, Index into) const {

@@ -146,6 +146,7 @@ void Remesher::meet_error() {
     double error = start_error();
     const double wanted = wanted_error();
     constexpr int most_rounds = 6;
+    const double first = error;
     std::optional<Attempt> kept;
     const auto cost_of = [](const Attempt& attempt) {
         double cost = 0.0;
@@ -175,7 +176,11 @@ void Remesher::meet_error() {
         const RemeshStatistics s = next->statistics;
         if (kept && cost > 0.98 * cost_of(*kept)) break;
         kept.emplace(std::move(*next));
-        if (3 * s.mended_triangles > kept->mesh.polygon_count()) break;  // closer lines have not helped so far either
+        if (3 * s.mended_triangles > kept->mesh.polygon_count()) {
+            if (!(error > first)) break;  // closer lines have not helped so far either
+            error = 0.5 * first;          // too far apart for the topology, whatever the error allows
+            continue;
+        }
         if (double(s.mended_triangles) + double(s.cut_faces) < 0.03 * double(kept->mesh.polygon_count())) break;
     }
     const auto faces = kept ? kept->mesh.polygon_count() : 0;
