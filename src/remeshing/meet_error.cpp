@@ -189,7 +189,8 @@ void Remesher::meet_error() {
     if (kept) best_.emplace(kept->draft);
     give_input_within_error();
     if (control_.cancelled() || !kept) return;
-    if (result_.outcome == Outcome::done && result_.statistics.faces < faces) return;
+    const RemeshStatistics& s = result_.statistics;
+    if (result_.outcome == Outcome::done && double(s.faces) + 2.0 * double(s.triangles) < cost_of(*kept)) return;
     result_.outcome = Outcome::done;
     keep(std::move(*kept));
 }

@@ -190,7 +190,7 @@ void Remesher::relieve_crowded(Draft& d) {
 }
 
 Draft Remesher::draft(double error) {
-    constexpr int patience = 4, most_rounds = 14, most_broken_rounds = 3;
+    constexpr int patience = 6, most_rounds = 16, most_broken_rounds = 3;
     int broken_rounds = 0;
     std::optional<Draft> before;  // the last one without flaws, and its broken faces
     std::size_t were_broken = 0;
