@@ -1,7 +1,6 @@
 // Peaks of the distance where a count is the goal: a few polygons that no placement brings near.
 #include <algorithm>
 
-#include "remeshing/cut_far.h"
 #include "remeshing/remesher.h"
 
 namespace certa::remeshing {
@@ -32,16 +31,7 @@ void Remesher::lower_peaks() {
         const std::vector<Index> far = find_far();
         if (double(far.size()) > most_share * double(farthest_.size())) return;
         CoarseMesh mesh = judged_;
-        const std::size_t before = mesh.points.size();
-        const bool may_add = filled_.points.size() == placed_.points.size();
-        const std::vector<Recut> recuts = cut_far_polygons(mesh, far, *tree_, may_add);
-        if (recuts.empty()) return;
-        mesh = recut(mesh, recuts);
-        for (std::size_t v = before; v < mesh.points.size(); ++v) {
-            placed_.add_vertex(mesh.points[v], mesh.places[v]);
-            filled_.add_vertex(mesh.points[v], mesh.places[v]);
-        }
-        recuts_.insert(recuts_.end(), recuts.begin(), recuts.end());
+        if (!cut_far(far, filled_.points.size() == placed_.points.size(), mesh)) return;
         place(mesh, options);
         take_places(mesh);
     }

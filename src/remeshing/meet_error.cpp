@@ -52,6 +52,21 @@ std::vector<Index> Remesher::far_polygons(double limit) const {
     return far;
 }
 
+/// Cuts polygons of the mesh, which is the one judged last, and takes over the vertices that this adds. False: there is
+/// nothing to cut.
+bool Remesher::cut_far(const std::vector<Index>& far, bool may_add, CoarseMesh& mesh) {
+    const std::size_t before = mesh.points.size();
+    const std::vector<Recut> recuts = cut_far_polygons(mesh, far, *tree_, may_add);
+    if (recuts.empty()) return false;
+    mesh = recut(mesh, recuts);
+    for (std::size_t v = before; v < mesh.points.size(); ++v) {
+        placed_.add_vertex(mesh.points[v], mesh.places[v]);
+        filled_.add_vertex(mesh.points[v], mesh.places[v]);
+    }
+    recuts_.insert(recuts_.end(), recuts.begin(), recuts.end());
+    return true;
+}
+
 /// What is too far is placed with the largest distances in mind; then it is cut along its best diagonal, then around
 /// new vertices.
 void Remesher::come_near(double limit) {
@@ -70,16 +85,8 @@ void Remesher::come_near(double limit) {
     for (int round = 0; round < most_rounds && !control_.cancelled(); ++round) {
         const std::vector<Index> far = far_polygons(limit);
         watch_.stage("certificate");
-        const std::size_t before = judged_.points.size();
         CoarseMesh mesh = judged_;
-        std::vector<Recut> recuts = cut_far_polygons(mesh, far, *tree_, may_add);
-        if (recuts.empty()) return;
-        mesh = recut(mesh, recuts);
-        for (std::size_t v = before; v < mesh.points.size(); ++v) {
-            placed_.add_vertex(mesh.points[v], mesh.places[v]);
-            filled_.add_vertex(mesh.points[v], mesh.places[v]);
-        }
-        recuts_.insert(recuts_.end(), recuts.begin(), recuts.end());
+        if (!cut_far(far, may_add, mesh)) return;
         const CoarseMesh unplaced = mesh;
         const double largest = far_quantile(1.0);
         options.peak_rounds = 3;

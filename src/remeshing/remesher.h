@@ -96,6 +96,7 @@ private:
     void come_near(double limit);
     void drop_harmful_recuts();
     void lower_peaks();
+    bool cut_far(const std::vector<Index>& far, bool may_add, CoarseMesh& mesh);
     void take_places(const CoarseMesh& mesh);
     double wanted_error() const { return options_.error.value_or(default_remesh_error).resolve(mesh_.diagonal); }
     bool finish();
