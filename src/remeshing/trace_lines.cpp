@@ -106,7 +106,7 @@ private:
     void leave(const Cursor& cursor, const Complex& direction, Index& exit, double& t) const;
     /// One triangle further. False: the line has ended (`end` says how).
     bool step(Index line, Cursor& cursor, LineEnd& end, const Complex* homing);
-    LineEnd follow(Index line, Cursor cursor, bool may_close);
+    LineEnd follow(Index line, Cursor cursor, bool is_first, bool may_close);
     bool close_loop(Index line, Cursor cursor);
     bool meets_other(Index line) const;
     bool run_to_other(Index line, Cursor cursor, double allowed);
@@ -468,7 +468,7 @@ bool FamilyTracer::close_loop(Index line, Cursor cursor) {
     return false;
 }
 
-LineEnd FamilyTracer::follow(Index line, Cursor cursor, bool may_close) {
+LineEnd FamilyTracer::follow(Index line, Cursor cursor, bool is_first, bool may_close) {
     double length = 0.0, unpublished = 0.0;
     std::size_t tail = network_.lines()[line].crossings.size() - 1;  // the first chord that is not published
     const double least = 0.7 * other_spacing_at(cursor.halfedge, cursor.t);
@@ -488,7 +488,7 @@ LineEnd FamilyTracer::follow(Index line, Cursor cursor, bool may_close) {
         const double nearest = distance_at(l.crossings.back(), l.faces.back());
         if (!going) return end;
         length += piece;
-        if (may_close) {
+        if (is_first && may_close) {
             const Point3 to = origin - p;
             const double gap = norm(to), ahead = piece > 0.0 ? dot(to, p - q) / piece : 0.0;
             if (gap < std::max(spacing, 2.0 * mesh_.mean_edge) && length > 2.5 * gap && ahead > 0.0 &&
@@ -503,7 +503,7 @@ LineEnd FamilyTracer::follow(Index line, Cursor cursor, bool may_close) {
         }
         unpublished += piece;
         // A line does not see its own last two spacings, nor, on its way from the seed, its first two.
-        if (may_close && length < 2.0 * spacing) tail = last + 1, unpublished = 0.0;
+        if (is_first && length < 2.0 * spacing) tail = last + 1, unpublished = 0.0;
         if (unpublished > 4.0 * spacing && length > least) {
             double kept = 0.0;
             std::size_t k = last + 1;
@@ -537,7 +537,8 @@ bool FamilyTracer::trace(const Seed& seed) {
         }
         Cursor cursor = start(line, sides[k], along_halfedge(sides[k], t), true);
         cursor.crossing = crossing;
-        const LineEnd end = follow(line, cursor, k == 0);
+        // From a crease a line leads away to one side: it has no other to come back to.
+        const LineEnd end = follow(line, cursor, k == 0, !feature);
         l = &network_.lines()[line];
         if (k == 1) l->ends[0] = l->ends[1];
         l->ends[1] = end;

@@ -369,6 +369,27 @@ Arranged arrange(const Prepared& p, double error) {
     return a;
 }
 
+/// Lines around a torus that one crease cuts come back to it from its other side, and end there.
+TEST(Lines, DoNotCloseAcrossACrease) {
+    constexpr std::uint32_t around = 80, tube = 17;
+    RemeshOptions options;
+    for (std::uint32_t j = 0; j < tube; ++j) options.features.push_back({VertexId{j}, VertexId{(j + 1) % tube}});
+    const Prepared p = prepare(generators::make_grid_torus(2.0, 0.8, around, tube), 3.0, false, options);
+    const Arranged a = arrange(p, 4e-3);
+    std::size_t cut = 0;
+    for (const Line& line : a.network.lines()) {
+        std::size_t on_crease = 0;
+        for (const Index c : line.crossings) {
+            const Index edge = a.network.crossing(c).edge;
+            on_crease += edge != no_index && p.mesh.is_feature(p.mesh.edge_halfedges[edge]) ? 1 : 0;
+        }
+        EXPECT_FALSE(line.closed && on_crease > 0);
+        cut += on_crease == 2 ? 1 : 0;
+    }
+    EXPECT_GT(cut, 5U);
+    EXPECT_TRUE(find_flaws(a.graph, a.network, a.faces).empty());
+}
+
 /// The triangles that are located in a face fill it: compared by area and centre with the face's own corners.
 TEST(Samples, AreLocatedInTheFaceAroundThem) {
     for (const TriangleMesh& input : {generators::make_ellipsoid(2.0, 1.2, 0.8, 20000, 1),
