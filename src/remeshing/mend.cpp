@@ -2,9 +2,10 @@
 //
 // Each round makes the whole result anew from the same polygons and a set of faces: connected faces are a region, which
 // the input inside replaces, thinned out. Sides of the region are cut where they pass edges of the input; the polygons
-// around take over those corners that are left. Then everything is judged. Broken polygons join the set; where a patch
-// is broken, it is not thinned out any more, and where that has not helped its region grows. Both only grow, so this
-// ends: at the latest when whole components are the input.
+// around take over those corners that are left. Then everything is judged. Broken polygons beside a region are cut
+// otherwise, then go back to where they were before placement; those for which that does not help, and all others, join
+// the set. Where a patch is broken though nothing beside it is, it is not thinned out any more, and where that has not
+// helped its region grows. All of this only grows, so it ends: at the latest when whole components are the input.
 #include "remeshing/mend.h"
 
 #include <certa/distance.h>
@@ -62,6 +63,7 @@ public:
           is_copied_(copied_vertices(mesh_)),
           patcher_(layout) {
         in_set_.assign(patcher_.face_count(), 0);
+        is_at_node_.assign(layout.nodes.size(), 0);
         is_cut_.assign(patcher_.face_count(), 0);
         for (std::size_t q = 0; q < base_.polygon_count(); ++q) {
             const auto ring = base_.polygon(q);
@@ -110,6 +112,12 @@ private:
         double radius = 0.0;
         std::size_t tries = 1, last_round = 0;
         bool holds(const Point3& p) const { return dot(p - center, p - center) <= radius * radius; }
+    };
+    /// A ball that holds a polygon.
+    struct Around {
+        Point3 center;
+        double radius = 0.0;
+        bool meets(const Around& other) const { return distance(center, other.center) < radius + other.radius; }
     };
     struct Region {
         std::vector<Index> faces;
@@ -219,7 +227,7 @@ private:
         for (Region& region : regions_) {
             const RegionPatch& patch = *find_patch(region);
             std::vector<Index> numbers = patch.outer;
-            for (const Index v : patch.outer) result_.points[v] = node_point(v);
+            for (const Index v : patch.outer) is_at_node_[v] = 1;
             for (const RegionVertex& v : patch.inner)
                 numbers.push_back(result_.add_vertex(v.point, v.place, v.kind, v.curve));
             for (const RegionSide& side : patch.sides)  // between ends that were merged nothing is left
@@ -243,11 +251,14 @@ private:
                         {numbers[side.corners[i - 1]], numbers[side.corners[i]], side.curve});
             }
         }
+        for (Index v = 0; v < is_at_node_.size(); ++v)
+            if (is_at_node_[v] != 0) result_.points[v] = node_point(v);
         add_polygons_around(between);
     }
     /// The polygons of no region, with the corners that regions have left on their sides.
     void add_polygons_around(const std::map<std::array<Index, 2>, std::vector<Index>>& between) {
         CoarseMesh changed = result_.without_polygons(), cut = changed;
+        is_changed_.assign(in_set_.size(), 0);
         std::vector<Index> ring;
         for (std::size_t q = 0; q < base_.polygon_count(); ++q) {
             const Index parent = base_.parent(q);
@@ -260,6 +271,7 @@ private:
                 if (found != between.end()) ring.insert(ring.end(), found->second.begin(), found->second.end());
             }
             const bool is_cut = parent != no_index && is_cut_[parent] != 0;
+            if (parent != no_index && ring.size() != old.size()) is_changed_[parent] = 1;
             (is_cut ? cut : ring.size() == old.size() ? result_ : changed).add_polygon(ring, parent);
         }
         // Corners without a turn leave too much to a reader who fills polygons: these are cut here.
@@ -356,7 +368,7 @@ private:
         }
     }
 
-    /// Takes what is broken into the set. False: nothing is, or nothing can be done about it.
+    /// Does something about what is broken. False: nothing is, or nothing can be done about it.
     bool widen(MendingReport& report) {
         const Damage damage = find_damage(judge_, result_, control_);
         report.split_quads = damage.split;
@@ -377,17 +389,17 @@ private:
         std::sort(broken.begin(), broken.end());
         broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
         report.left.clear();
+        for (const Index q : broken) report.left.push_back(result_.points[result_.polygon(q)[0]]);
+        const std::vector<Around> outside = help_outside(broken);
+        has_changed = has_changed || !outside.empty();
         std::map<Index, std::vector<Index>> broken_patches;
         for (const Index q : broken) {
             const Index f = result_.parent(q);
-            report.left.push_back(result_.points[result_.polygon(q)[0]]);
-            if (f == no_index) continue;
-            if (in_set_[f] == 0) {
-                take_in(f);
-                has_changed = true;
-            } else if (region_of_[f] != no_index) {  // not one that has just joined
+            if (f == no_index || region_of_[f] == no_index) continue;
+            // It may be sound once what it meets is.
+            const Around own = around(q);
+            if (std::none_of(outside.begin(), outside.end(), [&](const Around& other) { return own.meets(other); }))
                 broken_patches[region_of_[f]].push_back(q);
-            }
         }
         for (const auto& [r, polygons] : broken_patches) {
             const Region& region = regions_[r];
@@ -406,6 +418,49 @@ private:
         return has_changed;
     }
 
+    Around around(Index q) const {
+        const auto ring = result_.polygon(q);
+        Around ball;
+        for (const Index v : ring)
+            ball.center = ball.center + (1.0 / static_cast<double>(ring.size())) * result_.points[v];
+        for (const Index v : ring) ball.radius = std::max(ball.radius, distance(ball.center, result_.points[v]));
+        return ball;
+    }
+
+    /// What is broken and in no region: with a region's corners on its sides, the best triangles may be better than a
+    /// template's; beside these corners, which are on the input, others may have to be there, too. Else it is taken
+    /// into the set. Returns where that was.
+    std::vector<Around> help_outside(const std::vector<Index>& broken) {
+        std::vector<Around> places;
+        std::vector<Index> faces;
+        std::vector<std::uint8_t> is_helped(in_set_.size(), 0);
+        for (const Index q : broken) {
+            const Index f = result_.parent(q);
+            if (f == no_index || in_set_[f] != 0) continue;
+            places.push_back(around(q));
+            faces.push_back(f);
+            const bool may_cut = is_changed_[f] != 0 && is_cut_[f] == 0;
+            if (may_cut || (is_helped[f] == 0 && return_to_nodes(q))) is_helped[f] = 1;
+            if (may_cut) is_cut_[f] = 1;
+        }
+        for (const Index f : faces)
+            if (is_helped[f] == 0) take_in(f);
+        return places;
+    }
+    /// False: no corner is one of a region, or all are where the input is already.
+    bool return_to_nodes(Index q) {
+        const auto ring = result_.polygon(q);
+        const auto is_returned = [&](Index v) { return v < is_at_node_.size() && is_at_node_[v] != 0; };
+        if (std::none_of(ring.begin(), ring.end(), is_returned)) return false;
+        bool any = false;
+        for (const Index v : ring) {
+            if (v >= is_at_node_.size() || is_at_node_[v] != 0) continue;
+            is_at_node_[v] = 1;
+            any = true;
+        }
+        return any;
+    }
+
     /// Nothing is thinned out any more at this polygon, each time somewhat farther around it. How often it has been.
     std::size_t keep(Index q, std::size_t round) {
         const auto ring = result_.polygon(q);
@@ -416,12 +471,8 @@ private:
                 ball.radius *= 1.5;
                 return ++ball.tries;
             }
-        Ball ball;
-        ball.last_round = round;
-        for (const Index v : ring)
-            ball.center = ball.center + (1.0 / static_cast<double>(ring.size())) * result_.points[v];
-        for (const Index v : ring) ball.radius = std::max(ball.radius, 1.5 * distance(ball.center, result_.points[v]));
-        kept_.push_back(ball);
+        const Around ball = around(q);
+        kept_.push_back({ball.center, 1.5 * ball.radius, 1, round});
         return kept_.back().tries;
     }
 
@@ -487,8 +538,10 @@ private:
     const std::vector<std::uint8_t> is_fixed_, is_copied_;
     RegionPatcher patcher_;
 
-    std::vector<std::uint8_t> in_set_;  ///< per face of the graph: the input takes its place
-    std::vector<std::uint8_t> is_cut_;  ///< likewise: triangles do
+    std::vector<std::uint8_t> in_set_;      ///< per face of the graph: the input takes its place
+    std::vector<std::uint8_t> is_cut_;      ///< likewise: triangles do
+    std::vector<std::uint8_t> is_changed_;  ///< likewise: its polygon has got corners of a region
+    std::vector<std::uint8_t> is_at_node_;  ///< per vertex: it is where the input is, not where it was placed
     std::map<Index, std::vector<Index>> open_in_patch_;
     std::vector<std::array<Index, 2>> sides_;  ///< of all polygons, the lower number first, sorted
     std::vector<Ball> kept_;
