@@ -57,41 +57,41 @@ Point3 normal_of(const Corners& corners) {
 }
 
 /// Normal equations of a least-squares fit.
-template <std::size_t n>
+template <std::size_t Size>
 struct Fit {
-    std::array<std::array<double, n>, n> left{};
-    std::array<double, n> right{};
+    std::array<std::array<double, Size>, Size> left{};
+    std::array<double, Size> right{};
     double squares = 0.0;  ///< of what is fitted; after `solve`, of what is left of it
 
-    void add(const std::array<double, n>& row, double value, double weight) {
-        for (std::size_t r = 0; r < n; ++r) {
+    void add(const std::array<double, Size>& row, double value, double weight) {
+        for (std::size_t r = 0; r < Size; ++r) {
             right[r] += weight * value * row[r];
-            for (std::size_t c = 0; c < n; ++c) left[r][c] += weight * row[r] * row[c];
+            for (std::size_t c = 0; c < Size; ++c) left[r][c] += weight * row[r] * row[c];
         }
         squares += weight * value * value;
     }
     /// By Gauss without pivots: the matrix is positive definite, but for directions that nothing is known of, which
     /// get 0.
-    std::array<double, n> solve() {
+    std::array<double, Size> solve() {
         constexpr double least = 1e-9;
-        std::array<double, n> scale{}, x{};
-        for (std::size_t c = 0; c < n; ++c) scale[c] = left[c][c];
-        for (std::size_t c = 0; c < n; ++c) {
+        std::array<double, Size> scale{}, x{};
+        for (std::size_t c = 0; c < Size; ++c) scale[c] = left[c][c];
+        for (std::size_t c = 0; c < Size; ++c) {
             if (!(left[c][c] > least * scale[c])) {
                 left[c][c] = 0.0;
                 continue;
             }
-            for (std::size_t r = c + 1; r < n; ++r) {
+            for (std::size_t r = c + 1; r < Size; ++r) {
                 const double part = left[r][c] / left[c][c];
-                for (std::size_t k = c; k < n; ++k) left[r][k] -= part * left[c][k];
+                for (std::size_t k = c; k < Size; ++k) left[r][k] -= part * left[c][k];
                 right[r] -= part * right[c];
             }
             squares -= right[c] * right[c] / left[c][c];
         }
-        for (std::size_t c = n; c-- > 0;) {
+        for (std::size_t c = Size; c-- > 0;) {
             if (left[c][c] == 0.0) continue;
             x[c] = right[c];
-            for (std::size_t k = c + 1; k < n; ++k) x[c] -= left[c][k] * x[k];
+            for (std::size_t k = c + 1; k < Size; ++k) x[c] -= left[c][k] * x[k];
             x[c] /= left[c][c];
         }
         return x;

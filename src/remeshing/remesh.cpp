@@ -207,7 +207,13 @@ Draft Remesher::draft(double error) {
         share_nodes(d.graph, mesh_);
         d.faces = d.graph.trace_faces(mesh_);
         Flaws flaws = find_flaws(d.graph, d.network, d.faces);
-        d.open = open_faces(flaws, d, spacing, round >= patience);
+        d.open = open_faces(flaws, d, spacing, false);
+        if (round >= patience && !flaws.empty()) {
+            const std::vector<Index> given_up = open_faces(flaws, d, spacing, true);
+            d.gives_up = !given_up.empty();
+            d.open.insert(d.open.end(), given_up.begin(), given_up.end());
+            std::sort(d.open.begin(), d.open.end());
+        }
         if (flaws.empty()) {
             d.polygons = make_polygons(d.graph, d.faces, d.open, d.counts, d.nodes);
             merge_ends(d, spacing);
@@ -292,8 +298,9 @@ void Remesher::search(double wanted) {
 void Remesher::find_network(double wanted) {
     double best_miss = 1e300;
     const auto miss_of = [](double off, const Draft& d) {
-        constexpr double of_mending = 0.02;  // mending changes the count again
-        return (off > 0.0 ? 0.25 * off : -off) + (d.broken > 0 ? of_mending : 0.0);
+        constexpr double of_mending = 0.02, of_broken = 0.002, of_giving_up = 1.0;  // mending changes the count again
+        return (off > 0.0 ? 0.25 * off : -off) + (d.broken > 0 ? of_mending : 0.0) +
+               of_broken * static_cast<double>(d.broken) + (d.gives_up ? of_giving_up : 0.0);
     };
     int networks = 0;
     /// How far the count is off, as a logarithm; empty: near enough, or cancelled.
@@ -303,7 +310,9 @@ void Remesher::find_network(double wanted) {
         Draft d = draft(error);
         if (control_.cancelled()) return std::nullopt;
         ++networks;
-        const double off = std::log(std::max(count_of(d), 1.0) / wanted);
+        // Of what is given up, nodes tell how many vertices there would be.
+        const double count = d.gives_up ? static_cast<double>(d.nodes.size()) : count_of(d);
+        const double off = std::log(std::max(count, 1.0) / wanted);
         const bool whole = d.flaws.empty();
         if (!best_ || (whole && miss_of(off, d) < best_miss)) {
             best_miss = whole ? miss_of(off, d) : 1e300;

@@ -37,6 +37,7 @@ struct Draft {
     std::size_t samples = 0;      ///< that polygons are triangulated around
     std::vector<Point3> flaws{};  ///< places that no refinement has mended
     std::size_t broken = 0;       ///< faces whose polygons will be mended
+    bool gives_up = false;        ///< what no line has mended is open, where lines should be, too
 
     Layout layout() const { return {network, graph, faces, nodes, merged, open, filled}; }
 };

@@ -139,7 +139,7 @@ private:
             mesh_.add_polygon(base_.polygon(q), base_.parent(q));
             components_.push_back(base_components_[q]);
         }
-        for (std::uint8_t level = 1; level < shares.size(); ++level) {
+        for (std::size_t level = 1; level < shares.size(); ++level) {
             std::vector<Index> triangles;
             for (Index f = 0; f < work_.face_count(); ++f)
                 if (levels_[work_.components[f]] == level) triangles.push_back(f);
