@@ -109,14 +109,17 @@ private:
     const Point3& at(Index v) const { return mesh_.points[v]; }
     std::array<Point3, 3> points(const Triple& t) const { return {at(t[0]), at(t[1]), at(t[2])}; }
 
-    /// How much a diagonal is worth avoiding, as by distance from the input; both of its triangles count needles.
-    double cost_of(const Filling& filling, Index a, Index b) const {
-        double cost = 0.0;
-        for (const Triple& t : filling.triangles) cost += needle_weight(points(t)) * judge_.diagonal * judge_.diagonal;
+    /// How much a diagonal is worth avoiding, at least and at most: by its distance from the input, and by the needles
+    /// among its triangles, whose weight depends on the size that others take for the whole.
+    std::array<double, 2> cost_of(const Filling& filling, Index a, Index b) const {
+        constexpr double sizes = 8.0;
+        double needles = 0.0, cost = 0.0;
+        for (const Triple& t : filling.triangles)
+            needles += needle_weight(points(t)) * judge_.diagonal * judge_.diagonal;
         for (const double s : {0.25, 0.5, 0.75})
             cost +=
                 2.0 * distance(at(a), at(b)) * judge_.tree.find_nearest((1.0 - s) * at(a) + s * at(b)).squared_distance;
-        return cost;
+        return {cost + needles / sizes, cost + sizes * needles};
     }
     void list_fillings() {
         fillings_.assign(mesh_.polygon_count(), {});
@@ -143,20 +146,24 @@ private:
         };
         const bool first_faces = faces(first), second_faces = faces(second);
         if (first_faces != second_faces) {
-            // With a corner that hardly turns the wrong way, others may take the other diagonal.
+            // With a corner that hardly turns the wrong way, or not at all, others may take the other diagonal.
+            constexpr double hardly = 1e-4;  // a cosine
             const Filling& other = first_faces ? second : first;
-            is_doubtful_[q] = std::any_of(other.triangles.begin(), other.triangles.end(),
-                                          [&](const Triple& t) { return needle_weight(points(t)) > 0.0; });
+            is_doubtful_[q] = std::any_of(other.triangles.begin(), other.triangles.end(), [&](const Triple& t) {
+                const Point3 own = cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
+                return needle_weight(points(t)) > 0.0 ||
+                       std::abs(dot(own, normal)) <= hardly * norm(own) * norm(normal);
+            });
             list.push_back(first_faces ? std::move(first) : std::move(second));
             return;
         }
         constexpr double clear = 1.5;  // by so much nearer is what everybody takes
-        const double x = cost_of(first, a, c), y = cost_of(second, b, d);
+        const auto x = cost_of(first, a, c), y = cost_of(second, b, d);
         // Which of two diagonals in the surface is the nearer one is a matter of rounding.
         const double rounding =
             1e-26 * judge_.diagonal * judge_.diagonal * (distance(at(a), at(c)) + distance(at(b), at(d)));
-        if (!first_faces || y <= clear * x + rounding) list.push_back(std::move(second));
-        if (!first_faces || x <= clear * y + rounding) list.push_back(std::move(first));
+        if (!first_faces || y[0] <= clear * x[1] + rounding) list.push_back(std::move(second));
+        if (!first_faces || x[0] <= clear * y[1] + rounding) list.push_back(std::move(first));
     }
 
     void find_folds() {

@@ -104,6 +104,26 @@ TEST(Damage, FindsFoldsAndSplitsQuadsOnTheirSoundDiagonal) {
     EXPECT_EQ(damage.polygons, (std::vector<Index>{0, 1}));  // they overlap, too
 }
 
+/// Two faces of a tetrahedron as a quad: across its other diagonal one triangle is upright on it, the third face
+/// inside out. Who rounds otherwise would take that.
+TEST(Damage, SplitsQuadsWhoseOtherDiagonalHardlyTurnsAway) {
+    const auto triangle = [](std::uint32_t a, std::uint32_t b, std::uint32_t c) {
+        return Triangle{VertexId{a}, VertexId{b}, VertexId{c}};
+    };
+    const TriangleMesh input{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}},
+                             {triangle(0, 2, 1), triangle(0, 1, 3), triangle(1, 2, 3), triangle(0, 3, 2)}};
+    const core::TriangleTree tree(input.positions, input.triangles);
+    CoarseMesh mesh;
+    for (const Point3& p : input.positions) mesh.add_vertex(p, {});
+    mesh.add_polygon(std::array<Index, 4>{0, 1, 3, 2});
+    mesh.add_polygon(std::array<Index, 3>{0, 2, 1});
+    mesh.add_polygon(std::array<Index, 3>{1, 2, 3});
+    const Damage damage = find_damage({input, tree, 1.8, true}, mesh, {});
+    EXPECT_EQ(damage.split, 1U);
+    EXPECT_TRUE(damage.polygons.empty());
+    EXPECT_EQ(mesh.polygon_count(), 4U);
+}
+
 TEST(RegionPatch, HasTheTopologyOfItsRegion) {
     const Fixture torus(generators::make_torus(2.0, 0.7, 6000, 1), 3e-3);
     RegionPatcher patcher(torus.layout());
