@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "core/parallel.h"
@@ -106,20 +107,36 @@ public:
     }
 
 private:
+    static constexpr std::size_t most_listed = 6;  ///< corners of polygons that are judged on all ways to fill them
+    static constexpr double clear = 1.5;           ///< by so much nearer is what everybody takes
     const Point3& at(Index v) const { return mesh_.points[v]; }
     std::array<Point3, 3> points(const Triple& t) const { return {at(t[0]), at(t[1]), at(t[2])}; }
 
     /// How much a diagonal is worth avoiding, at least and at most: by its distance from the input, and by the needles
     /// among its triangles, whose weight depends on the size that others take for the whole.
     std::array<double, 2> cost_of(const Filling& filling, Index a, Index b) const {
-        constexpr double sizes = 8.0;
-        double needles = 0.0, cost = 0.0;
-        for (const Triple& t : filling.triangles)
-            needles += needle_weight(points(t)) * judge_.diagonal * judge_.diagonal;
+        double cost = 0.0;
         for (const double s : {0.25, 0.5, 0.75})
             cost +=
                 2.0 * distance(at(a), at(b)) * judge_.tree.find_nearest((1.0 - s) * at(a) + s * at(b)).squared_distance;
+        return with_needles(filling, cost);
+    }
+    std::array<double, 2> with_needles(const Filling& filling, double cost) const {
+        constexpr double sizes = 8.0;
+        double needles = 0.0;
+        for (const Triple& t : filling.triangles)
+            needles += needle_weight(points(t)) * judge_.diagonal * judge_.diagonal;
         return {cost + needles / sizes, cost + sizes * needles};
+    }
+    /// Which of several diagonals in the surface is the nearest one is a matter of rounding.
+    double rounding_of(double lengths) const { return 1e-26 * judge_.diagonal * judge_.diagonal * lengths; }
+    /// A triangle's side of its polygon: 1, -1, or 0 where it is nearly upright on it or a needle.
+    int side_of(const Triple& t, const Point3& normal) const {
+        constexpr double hardly = 1e-4;  // a cosine
+        const Point3 own = cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
+        const double forward = dot(own, normal), clearly = hardly * norm(own) * norm(normal);
+        if (needle_weight(points(t)) > 0.0) return 0;
+        return forward > clearly ? 1 : forward < -clearly ? -1 : 0;
     }
     void list_fillings() {
         fillings_.assign(mesh_.polygon_count(), {});
@@ -131,9 +148,14 @@ private:
     void fill(std::size_t q) {
         const auto ring = mesh_.polygon(q);
         auto& list = fillings_[q];
+        if (ring.size() > 4 && ring.size() <= most_listed) return fill_polygon(q);
         if (ring.size() != 4) {
             list.push_back({});
             triangulate_polygon(mesh_.points, ring, judge_.tree, list[0].triangles);
+            if (ring.size() == 3) return;
+            // With so many corners others clip ears.
+            list.push_back({});
+            clip_ears(mesh_.points, ring, judge_.tree, list[1].triangles);
             return;
         }
         const Index a = ring[0], b = ring[1], c = ring[2], d = ring[3];
@@ -147,23 +169,63 @@ private:
         const bool first_faces = faces(first), second_faces = faces(second);
         if (first_faces != second_faces) {
             // With a corner that hardly turns the wrong way, or not at all, others may take the other diagonal.
-            constexpr double hardly = 1e-4;  // a cosine
             const Filling& other = first_faces ? second : first;
-            is_doubtful_[q] = std::any_of(other.triangles.begin(), other.triangles.end(), [&](const Triple& t) {
-                const Point3 own = cross(at(t[1]) - at(t[0]), at(t[2]) - at(t[0]));
-                return needle_weight(points(t)) > 0.0 ||
-                       std::abs(dot(own, normal)) <= hardly * norm(own) * norm(normal);
-            });
+            is_doubtful_[q] = std::any_of(other.triangles.begin(), other.triangles.end(),
+                                          [&](const Triple& t) { return side_of(t, normal) == 0; });
             list.push_back(first_faces ? std::move(first) : std::move(second));
             return;
         }
-        constexpr double clear = 1.5;  // by so much nearer is what everybody takes
         const auto x = cost_of(first, a, c), y = cost_of(second, b, d);
-        // Which of two diagonals in the surface is the nearer one is a matter of rounding.
-        const double rounding =
-            1e-26 * judge_.diagonal * judge_.diagonal * (distance(at(a), at(c)) + distance(at(b), at(d)));
+        const double rounding = rounding_of(distance(at(a), at(c)) + distance(at(b), at(d)));
         if (!first_faces || y[0] <= clear * x[1] + rounding) list.push_back(std::move(second));
         if (!first_faces || x[0] <= clear * y[1] + rounding) list.push_back(std::move(first));
+    }
+
+    /// Five corners or more: all ways whose triangles look to the polygon's side, and that nobody can tell from the
+    /// nearest one.
+    void fill_polygon(std::size_t q) {
+        const auto ring = mesh_.polygon(q);
+        const std::size_t n = ring.size();
+        Point3 normal;
+        for (std::size_t i = 1; i + 1 < n; ++i)
+            normal = normal + cross(at(ring[i]) - at(ring[0]), at(ring[i + 1]) - at(ring[0]));
+        std::vector<double> costs(n * n, 0.0);  // of diagonals
+        double lengths = 0.0;
+        for (std::size_t i = 0; i < n; ++i)
+            for (std::size_t j = i + 2; j < n; ++j) {
+                if (i == 0 && j == n - 1) continue;
+                costs[i * n + j] = cost_of({}, ring[i], ring[j])[0];
+                lengths += distance(at(ring[i]), at(ring[j]));
+            }
+        struct Way {
+            Filling filling;
+            std::array<double, 2> cost{};
+        };
+        std::vector<Way> ways;
+        double best = std::numeric_limits<double>::infinity();  // of those that surely look to the polygon's side
+        for (const auto& cut : all_triangulations(n)) {
+            Way way;
+            int least = 1;
+            double diagonals = 0.0;
+            for (const auto& [i, j, k] : cut) {
+                way.filling.triangles.push_back({ring[i], ring[j], ring[k]});
+                least = std::min(least, side_of(way.filling.triangles.back(), normal));
+                // Sorted corners; each diagonal belongs to two triangles.
+                diagonals += 0.5 * (costs[i * n + j] + costs[j * n + k] + costs[i * n + k]);
+            }
+            if (least < 0) continue;
+            way.cost = with_needles(way.filling, diagonals);
+            if (least > 0) best = std::min(best, way.cost[1]);
+            ways.push_back(std::move(way));
+        }
+        is_doubtful_[q] = best < std::numeric_limits<double>::infinity() ? 0 : 1;
+        std::stable_sort(ways.begin(), ways.end(), [](const Way& a, const Way& b) { return a.cost[1] < b.cost[1]; });
+        for (Way& way : ways)
+            if (is_doubtful_[q] != 0 || way.cost[0] <= clear * best + rounding_of(lengths))
+                fillings_[q].push_back(std::move(way.filling));
+        if (!fillings_[q].empty()) return;
+        fillings_[q].push_back({});
+        triangulate_polygon(mesh_.points, ring, judge_.tree, fillings_[q][0].triangles);
     }
 
     void find_folds() {

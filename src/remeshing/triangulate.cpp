@@ -114,7 +114,32 @@ private:
     std::vector<std::size_t> apex_;
 };
 
+using Cut = std::vector<std::array<std::size_t, 3>>;
+
+/// Of the chain from corner i to corner j.
+std::vector<Cut> cuts_of_chain(std::size_t i, std::size_t j) {
+    if (j - i < 2) return {Cut{}};
+    std::vector<Cut> cuts;
+    for (std::size_t k = i + 1; k < j; ++k)
+        for (const Cut& left : cuts_of_chain(i, k))
+            for (const Cut& right : cuts_of_chain(k, j)) {
+                Cut& cut = cuts.emplace_back(left);
+                cut.insert(cut.end(), right.begin(), right.end());
+                cut.push_back({i, k, j});
+            }
+    return cuts;
+}
+
 }  // namespace
+
+void clip_ears(std::span<const Point3> points, std::span<const Index> ring, const core::TriangleTree& input,
+               Triangles& triangles) {
+    Cutter(points, ring, input).cut_ears(triangles);
+}
+
+std::vector<std::vector<std::array<std::size_t, 3>>> all_triangulations(std::size_t n) {
+    return cuts_of_chain(0, n - 1);
+}
 
 void triangulate_polygon(std::span<const Point3> points, std::span<const Index> ring, const core::TriangleTree& input,
                          std::vector<std::array<Index, 3>>& triangles) {

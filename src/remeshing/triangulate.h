@@ -15,6 +15,14 @@ namespace certa::remeshing {
 void triangulate_polygon(std::span<const Point3> points, std::span<const Index> ring, const core::TriangleTree& input,
                          std::vector<std::array<Index, 3>>& triangles);
 
+/// The same by clipping ears, seen along Newell's normal, from the first corner on.
+void clip_ears(std::span<const Point3> points, std::span<const Index> ring, const core::TriangleTree& input,
+               std::vector<std::array<Index, 3>>& triangles);
+
+/// Every way to cut a polygon of n corners into triangles, by the numbers of its corners: 5 for n = 5, 14 for 6, 42
+/// for 7.
+std::vector<std::vector<std::array<std::size_t, 3>>> all_triangulations(std::size_t n);
+
 /// All polygons of a mesh. `polygon_of`, if given, receives the polygon of each triangle.
 std::vector<std::array<Index, 3>> triangulate(const CoarseMesh& mesh, const core::TriangleTree& input,
                                               std::vector<Index>* polygon_of = nullptr);
