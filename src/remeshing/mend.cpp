@@ -385,13 +385,19 @@ private:
             add_missed_creases(mesh_, judge_, result_, rule_.cover * bound(), apart);
         }
         if (rule_.error > 0.0) add_far(result_, apart);
-        bool has_changed = cut(apart, broken);
-        std::sort(broken.begin(), broken.end());
-        broken.erase(std::unique(broken.begin(), broken.end()), broken.end());
+        std::vector<Index> too_far;
+        bool has_changed = cut(apart, too_far);
+        const auto sort_unique = [](std::vector<Index>& list) {
+            std::sort(list.begin(), list.end());
+            list.erase(std::unique(list.begin(), list.end()), list.end());
+        };
+        sort_unique(broken);
+        const std::vector<Around> outside = help_outside(broken, too_far);
+        has_changed = has_changed || !outside.empty();
+        broken.insert(broken.end(), too_far.begin(), too_far.end());
+        sort_unique(broken);
         report.left.clear();
         for (const Index q : broken) report.left.push_back(result_.points[result_.polygon(q)[0]]);
-        const std::vector<Around> outside = help_outside(broken);
-        has_changed = has_changed || !outside.empty();
         std::map<Index, std::vector<Index>> broken_patches;
         for (const Index q : broken) {
             const Index f = result_.parent(q);
@@ -428,12 +434,18 @@ private:
     }
 
     /// What is broken and in no region: with a region's corners on its sides, the best triangles may be better than a
-    /// template's; beside these corners, which are on the input, others may have to be there, too. Else it is taken
-    /// into the set. Returns where that was.
-    std::vector<Around> help_outside(const std::vector<Index>& broken) {
+    /// template's; beside these corners, which are on the input, others may have to be there, too. Else, and what
+    /// is too far, it is taken into the set. Returns where that was.
+    std::vector<Around> help_outside(const std::vector<Index>& broken, const std::vector<Index>& too_far) {
         std::vector<Around> places;
         std::vector<Index> faces;
         std::vector<std::uint8_t> is_helped(in_set_.size(), 0);
+        for (const Index q : too_far) {
+            const Index f = result_.parent(q);
+            if (f == no_index || in_set_[f] != 0) continue;
+            places.push_back(around(q));
+            take_in(f);
+        }
         for (const Index q : broken) {
             const Index f = result_.parent(q);
             if (f == no_index || in_set_[f] != 0) continue;
