@@ -311,6 +311,21 @@ class Dirty : public testing::TestWithParam<std::size_t> {};
 TEST_P(Dirty, GivesASoundResultOrARefusal) { expect_sound_or_refused(cases(1)[GetParam()], 60); }
 INSTANTIATE_TEST_SUITE_P(Coarse, Dirty, testing::Range<std::size_t>(0, cases(1).size()), name_of_case);
 
+/// Polygons of many corners are filled by others in other ways: sound is what is so in all of them.
+TEST(Polygons, AreSoundHoweverTheyAreFilled) {
+    for (const std::uint64_t seed : {1U, 2U}) {
+        const TriangleMesh input =
+            generators::make_noisy(generators::make_ellipsoid(2.0, 1.2, 0.8, 1000, seed), 0.02, seed);
+        RemeshOptions options;
+        options.vertices = 250;
+        options.output = RemeshOutput::polygons;
+        const RemeshResult result = remesh(input, options);
+        ASSERT_EQ(result.outcome, Outcome::done);
+        const SurfaceCheck check = check_surface(result.mesh, make_polygon_mesh(input), {});
+        for (const auto& violation : check.violations) ADD_FAILURE() << violation.promise << ": " << violation.message;
+    }
+}
+
 /// The same, four times as fine.
 class DirtyLong : public testing::TestWithParam<std::size_t> {};
 TEST_P(DirtyLong, GivesASoundResultOrARefusal) {
