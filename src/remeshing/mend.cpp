@@ -385,8 +385,9 @@ private:
             add_missed_creases(mesh_, judge_, result_, rule_.cover * bound(), apart);
         }
         if (rule_.error > 0.0) add_far(result_, apart);
+        // Where the input is, a crease may be nearer, but not what keeps no error.
         std::vector<Index> too_far;
-        bool has_changed = cut(apart, too_far);
+        bool has_changed = cut(apart, rule_.error > 0.0 ? too_far : broken);
         const auto sort_unique = [](std::vector<Index>& list) {
             std::sort(list.begin(), list.end());
             list.erase(std::unique(list.begin(), list.end()), list.end());
