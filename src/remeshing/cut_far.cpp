@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <unordered_map>
 
 #include "core/vector3.h"
 #include "remeshing/triangulate.h"
@@ -21,18 +20,7 @@ using Ring = std::vector<Index>;
 class Cutter {
 public:
     Cutter(CoarseMesh& mesh, const core::TriangleTree& input)
-        : mesh_(mesh), input_(input), is_used_(mesh.polygon_count(), 0) {
-        for (const FeatureEdge& e : mesh.feature_edges) features_.push_back(pair_key(e.a, e.b));
-        std::sort(features_.begin(), features_.end());
-        for (Index q = 0; q < mesh.polygon_count(); ++q) {
-            const auto ring = mesh.polygon(q);
-            for (std::size_t i = 0; i < ring.size(); ++i) {
-                const auto [at, is_new] =
-                    beside_.try_emplace(pair_key(ring[i], ring[(i + 1) % ring.size()]), std::array{q, no_index});
-                if (!is_new) at->second[1] = q;
-            }
-        }
-    }
+        : mesh_(mesh), input_(input), sides_(mesh), is_used_(mesh.polygon_count(), 0) {}
 
     void cut_along_diagonal(Index q) {
         const auto ring = mesh_.polygon(q);
@@ -44,12 +32,13 @@ public:
             for (std::size_t i = 0; i < 3; ++i) {
                 const Index a = t[i], b = t[(i + 1) % 3];
                 const bool is_side = has_side(ring, a, b) || has_side(ring, b, a);
-                if (!is_side && beside_.contains(pair_key(a, b))) return;  // this edge is somewhere else already
+                if (!is_side && sides_.beside.contains(pair_key(a, b))) return;  // this edge is somewhere else already
             }
         }
         is_used_[q] = 1;
         for (const auto& t : triangles)
-            for (std::size_t i = 0; i < 3; ++i) beside_.try_emplace(pair_key(t[i], t[(i + 1) % 3]), std::array{q, q});
+            for (std::size_t i = 0; i < 3; ++i)
+                sides_.beside.try_emplace(pair_key(t[i], t[(i + 1) % 3]), std::array{q, q});
         recuts_.push_back(std::move(recut));
     }
 
@@ -61,8 +50,8 @@ public:
         bool is_waiting = false;
         for (std::size_t i = 0; i < ring.size(); ++i) {
             const Index a = ring[i], b = ring[(i + 1) % ring.size()];
-            if (std::binary_search(features_.begin(), features_.end(), pair_key(a, b))) continue;
-            const auto& both = beside_.at(pair_key(a, b));
+            if (std::binary_search(sides_.features.begin(), sides_.features.end(), pair_key(a, b))) continue;
+            const auto& both = sides_.beside.at(pair_key(a, b));
             const Index other = both[0] == q ? both[1] : both[0];
             const double far = distance_of_side(a, b);
             if (other == no_index || far <= farthest) continue;
@@ -117,8 +106,7 @@ private:
 
     CoarseMesh& mesh_;
     const core::TriangleTree& input_;
-    std::vector<std::uint64_t> features_;
-    std::unordered_map<std::uint64_t, std::array<Index, 2>> beside_;  ///< polygons of a side
+    SideTable sides_;
     std::vector<std::uint8_t> is_used_;
     std::vector<Recut> recuts_;
 };

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <iterator>
 #include <map>
-#include <unordered_map>
 
 #include "core/vector3.h"
 #include "remeshing/templates.h"
@@ -34,18 +33,7 @@ struct Candidate {
 
 class Joiner {
 public:
-    explicit Joiner(const CoarseMesh& mesh) : mesh_(mesh), is_used_(mesh.polygon_count(), 0) {
-        for (const FeatureEdge& e : mesh.feature_edges) features_.push_back(pair_key(e.a, e.b));
-        std::sort(features_.begin(), features_.end());
-        for (Index q = 0; q < mesh.polygon_count(); ++q) {
-            const auto ring = mesh.polygon(q);
-            for (std::size_t i = 0; i < ring.size(); ++i) {
-                const auto [at, is_new] =
-                    beside_.try_emplace(pair_key(ring[i], ring[(i + 1) % ring.size()]), std::array{q, no_index});
-                if (!is_new) at->second[1] = q;
-            }
-        }
-    }
+    explicit Joiner(const CoarseMesh& mesh) : mesh_(mesh), sides_(mesh), is_used_(mesh.polygon_count(), 0) {}
 
     std::vector<Recut> run() {
         for (Index q = 0; q < mesh_.polygon_count(); ++q) {
@@ -69,9 +57,9 @@ public:
             const auto ring = mesh_.polygon(q);
             for (std::size_t i = 0; i < ring.size(); ++i) {
                 const Index a = ring[i], b = ring[(i + 1) % ring.size()];
-                const auto& beside = beside_.at(pair_key(a, b));
+                const auto& beside = sides_.beside.at(pair_key(a, b));
                 if (beside[0] != q || beside[1] == no_index) continue;
-                if (std::binary_search(features_.begin(), features_.end(), pair_key(a, b))) continue;
+                if (std::binary_search(sides_.features.begin(), sides_.features.end(), pair_key(a, b))) continue;
                 const double now = distance_of(a, b);
                 if (now <= limit) continue;
                 Candidate candidate{now, {q, beside[1]}, {}};
@@ -95,7 +83,7 @@ private:
         for (const auto& t : triangles) {
             if (dot(normal_of(points_of(t)), normal) <= 0.0) return false;
             for (std::size_t i = 0; i < 3; ++i)
-                if (!beside_.contains(pair_key(t[i], t[(i + 1) % 3])) && distance_of(t[i], t[(i + 1) % 3]) > most)
+                if (!sides_.beside.contains(pair_key(t[i], t[(i + 1) % 3])) && distance_of(t[i], t[(i + 1) % 3]) > most)
                     return false;
             pieces.emplace_back(t.begin(), t.end());
         }
@@ -126,8 +114,8 @@ private:
         for (std::size_t i = 0; i < last.size(); ++i) {
             const Index a = last[i], b = last[(i + 1) % last.size()];
             const std::uint64_t key = pair_key(a, b);
-            if (std::binary_search(features_.begin(), features_.end(), key)) continue;
-            const auto& beside = beside_.at(key);
+            if (std::binary_search(sides_.features.begin(), sides_.features.end(), key)) continue;
+            const auto& beside = sides_.beside.at(key);
             const Index next = beside[0] == way_.back() ? beside[1] : beside[0];
             if (next == no_index || mesh_.polygon(next).size() > 4) continue;
             const bool is_end = mesh_.polygon(next).size() == 3;
@@ -205,8 +193,8 @@ private:
         for (const Ring& piece : candidate.pieces)
             for (std::size_t i = 0; i < piece.size(); ++i) {
                 const std::uint64_t key = pair_key(piece[i], piece[(i + 1) % piece.size()]);
-                const auto found = beside_.find(key);
-                if (found == beside_.end()) {
+                const auto found = sides_.beside.find(key);
+                if (found == sides_.beside.end()) {
                     added.push_back(key);
                     continue;
                 }
@@ -215,13 +203,12 @@ private:
                 };
                 if (!is_old(found->second[0]) && !is_old(found->second[1])) return false;
             }
-        for (const std::uint64_t key : added) beside_[key] = {no_index, no_index};
+        for (const std::uint64_t key : added) sides_.beside[key] = {no_index, no_index};
         return true;
     }
 
     const CoarseMesh& mesh_;
-    std::vector<std::uint64_t> features_;
-    std::unordered_map<std::uint64_t, std::array<Index, 2>> beside_;  ///< polygons of a side
+    SideTable sides_;
     std::vector<std::uint8_t> is_used_;
     std::vector<Index> way_;
     std::vector<Candidate> candidates_;
@@ -265,6 +252,19 @@ CoarseMesh recut(const CoarseMesh& mesh, const std::vector<Recut>& recuts) {
     for (const Polygon& polygon : polygons)
         if (!polygon.ring.empty()) out.add_polygon(polygon.ring, polygon.parent);
     return out;
+}
+
+SideTable::SideTable(const CoarseMesh& mesh) {
+    for (const FeatureEdge& e : mesh.feature_edges) features.push_back(pair_key(e.a, e.b));
+    std::sort(features.begin(), features.end());
+    for (Index q = 0; q < mesh.polygon_count(); ++q) {
+        const auto ring = mesh.polygon(q);
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const auto [at, is_new] =
+                beside.try_emplace(pair_key(ring[i], ring[(i + 1) % ring.size()]), std::array{q, no_index});
+            if (!is_new) at->second[1] = q;
+        }
+    }
 }
 
 std::vector<Recut> find_recuts(const CoarseMesh& mesh) {

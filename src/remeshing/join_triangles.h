@@ -1,5 +1,7 @@
 #pragma once
 // Fewer triangles than T-nodes ask for: two that are near each other become quads with what lies between them.
+#include <unordered_map>
+
 #include "core/triangle_tree.h"
 #include "remeshing/coarse_mesh.h"
 
@@ -9,6 +11,13 @@ namespace certa::remeshing {
 /// from another before it.
 struct Recut {
     std::vector<std::vector<Index>> before, after;
+};
+
+/// The sides of a mesh by their ends (pair_key): those on features, sorted, and the polygons beside each.
+struct SideTable {
+    explicit SideTable(const CoarseMesh& mesh);
+    std::vector<std::uint64_t> features;
+    std::unordered_map<std::uint64_t, std::array<Index, 2>> beside;
 };
 
 /// Ways to cut anew what two triangles cover with the quads on a short way between them (none, one or two), where that

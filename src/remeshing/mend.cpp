@@ -388,10 +388,6 @@ private:
         // Where the input is, a crease may be nearer, but not what keeps no error.
         std::vector<Index> too_far;
         bool has_changed = cut(apart, rule_.error > 0.0 ? too_far : broken);
-        const auto sort_unique = [](std::vector<Index>& list) {
-            std::sort(list.begin(), list.end());
-            list.erase(std::unique(list.begin(), list.end()), list.end());
-        };
         sort_unique(broken);
         const std::vector<Around> outside = help_outside(broken, too_far);
         has_changed = has_changed || !outside.empty();

@@ -9,12 +9,12 @@
 #include "remeshing/surface_cut.h"
 
 namespace certa::remeshing {
-namespace {
-
 void sort_unique(std::vector<Index>& list) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
 }
+
+namespace {
 
 std::vector<std::uint8_t> mark_minor(const WorkMesh& mesh) {
     std::vector<std::uint8_t> is_minor(mesh.edge_halfedges.size(), 0);

@@ -8,6 +8,9 @@
 
 namespace certa::remeshing {
 
+/// In order, each once.
+void sort_unique(std::vector<Index>& list);
+
 /// A graph and the polygons made of it.
 struct Layout {
     const Network& network;
