@@ -3,6 +3,7 @@
 // Extraction fills it (4.3), placement moves its points, templates and subdivision make other coarse meshes of it.
 #include <certa/mesh.h>
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <span>
@@ -71,5 +72,15 @@ struct CoarseMesh {
         return copy;
     }
 };
+
+/// Marks, besides those that are, all vertices of polygons with a marked one.
+inline void mark_around(const CoarseMesh& mesh, std::vector<std::uint8_t>& is_marked) {
+    const std::vector<std::uint8_t> before = is_marked;
+    for (std::size_t q = 0; q < mesh.polygon_count(); ++q) {
+        const auto corners = mesh.polygon(q);
+        if (std::any_of(corners.begin(), corners.end(), [&](Index v) { return before[v] != 0; }))
+            for (const Index v : corners) is_marked[v] = 1;
+    }
+}
 
 }  // namespace certa::remeshing

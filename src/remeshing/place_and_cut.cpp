@@ -26,8 +26,8 @@ std::vector<Recut> place_and_cut(const CoarseMesh& polygons, const core::Triangl
     const std::vector<Recut> joins = find_recuts(recut(known, recuts));
     recuts.insert(recuts.end(), joins.begin(), joins.end());
     options = {};
-    options.rounds = is_quick ? 2 : 9;
-    if (is_quick) options.peak_rounds = 5;
+    options.rounds = is_quick ? 2 : 5;
+    options.peak_rounds = is_quick ? 5 : 10;
     for (int round = 0; round < 2; ++round) {
         cut = recut(coarse, recuts);
         if (!place_all(far_in_the_end) || is_quick) break;

@@ -26,7 +26,7 @@ void add_creases(const WorkMesh& surface, const Judge& judge, const CoarseMesh& 
 
 void place_around(const WorkMesh& surface, const Judge& judge, Index first_added, const PlaceMesh& place,
                   const std::function<std::vector<Index>(CoarseMesh&)>& find_broken, CoarseMesh& mesh) {
-    constexpr int most_tries = 4;
+    constexpr int most_tries = 6;
     if (2 * static_cast<std::size_t>(first_added) < mesh.points.size()) return;  // there is little to place
     PlacementOptions options;
     options.rounds = 3;
@@ -42,8 +42,13 @@ void place_around(const WorkMesh& surface, const Judge& judge, Index first_added
             mesh = std::move(looked_at);
             return;
         }
+        // What does not help here helps farther around.
+        std::vector<std::uint8_t> goes_back(placed.points.size(), 0);
         for (const Index q : broken)
-            for (const Index v : looked_at.polygon(q)) placed.points[v] = mesh.points[v];
+            for (const Index v : looked_at.polygon(q)) goes_back[v] = 1;
+        for (int ring = 0; ring < round; ++ring) mark_around(looked_at, goes_back);
+        for (Index v = 0; v < goes_back.size(); ++v)
+            if (goes_back[v] != 0) placed.points[v] = mesh.points[v];
     }
 }
 

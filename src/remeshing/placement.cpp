@@ -31,6 +31,7 @@ using core::TriangleTree;
 
 constexpr double least_agreement = 0.25;  // cosine between the normals of the two ends of a pair
 constexpr double sideways = 0.7;          // cosine between the way to the nearest point and the normal there
+constexpr double input_share = 0.1;       // of the samples of the input in the weight of all
 constexpr double samples_per_side = 6.0, curve_weight = 0.3;  // of samples of creases and the boundary
 constexpr int half_steps = 5;
 
@@ -41,7 +42,7 @@ struct Pair {
     Point3 normal;          // of the input
     double along = 0.0;     // from the input to the coarse mesh, along the normal
     double distance = 0.0;  // to the nearest point
-    double weight = 0.0;    // both sides have a sum of 1/2; 0 where the sheets do not correspond
+    double weight = 0.0;    // sums to 1; 0 where the sheets do not correspond
 };
 
 struct Curve {
@@ -244,7 +245,7 @@ private:
                     const NearestPoint nearest = find_near(x, hint);
                     hint = nearest.triangle;
                     fill(pair, x, nearest.point, std::sqrt(nearest.squared_distance), normals_[hint]);
-                    pair.weight *= 0.5 * coarse_areas_[t] / area * lattice_[s].weight;
+                    pair.weight *= (1.0 - input_share) * coarse_areas_[t] / area * lattice_[s].weight;
                 }
             }
         });
@@ -270,7 +271,7 @@ private:
                 pair.w = nearest.weights;
                 fill(pair, nearest.point, p, std::sqrt(nearest.squared_distance), normals_[face]);
                 if (s >= surface_samples_) pair.weight = curve_weight;
-                pair.weight *= 0.5 / double(surface_samples_);
+                pair.weight *= input_share / double(surface_samples_);
             }
         });
     }

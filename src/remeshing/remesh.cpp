@@ -21,6 +21,7 @@
 #include "remeshing/check_options.h"
 #include "remeshing/coarsen.h"
 #include "remeshing/crowded.h"
+#include "remeshing/even_out.h"
 #include "remeshing/flat_faces.h"
 #include "remeshing/give_result.h"
 #include "remeshing/guides.h"
@@ -65,7 +66,7 @@ SpacingRule Remesher::rule_of(double error) const {
     rule.transfer = options_.transfer;
     rule.balance = balance_;
     rule.most = caps_.of_families();
-    if (options_.vertices || options_.faces) rule.evening = 0.25;
+    if (options_.vertices || options_.faces) rule.evening = 1.0 / 3.0;
     if (options_.hyperbolic_spacing) rule.hyperbolic = std::numbers::sqrt2;
     if (options_.isotropic_samples == IsotropicSamples::all) rule.near_umbilics = 0.8;
     return rule;
@@ -122,13 +123,16 @@ bool Remesher::prepare() {
 }
 
 /// Faces whose polygons turn away or meet others: too coarse for what the surface does there.
-std::vector<Index> Remesher::broken_faces(const Draft& draft) {
+std::vector<Index> Remesher::broken_faces(Draft& draft) {
     Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
     CoarseMesh polygons = cut(draft.polygons);
     std::vector<Index> faces;
     std::vector<Index> broken = judge_input(polygons, judge).polygons;
-    if (draft.open.size() == draft.filled.size() && !(mesh_.minor_edges.empty() && mesh_.minor_corners.empty()))
-        add_missed_creases(mesh_, judge, polygons, reach_of(mesh_, judge, polygons), broken);
+    if (draft.open.size() == draft.filled.size() && !(mesh_.minor_edges.empty() && mesh_.minor_corners.empty())) {
+        constexpr double part = 0.8;  // placement brings polygons nearer, and then fewer creases are near enough
+        draft.reach = std::max(draft.reach, reach_of(mesh_, judge, polygons));
+        add_missed_creases(mesh_, judge, polygons, part * draft.reach, broken);
+    }
     for (const Index q : broken)
         if (const Index f = polygons.parent(q);
             f != no_index && !std::binary_search(draft.open.begin(), draft.open.end(), f))
@@ -140,11 +144,12 @@ std::vector<Index> Remesher::broken_faces(const Draft& draft) {
 
 /// Faces that will not be polygons but triangles of the input: in flat patches, which no line crosses, what is no disk;
 /// with `all`, whatever is none. They are no flaws any more.
-std::vector<Index> Remesher::open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const {
+std::vector<Index> Remesher::open_faces(Flaws& flaws, const Draft& draft, bool all) const {
     std::vector<std::uint8_t> is_kept(mesh_.patch_count, 0);
     if (!all)
         for (Index w = 0; w < mesh_.wedge_count(); ++w)
-            if (spacing.wanted[0][w] || spacing.wanted[1][w]) is_kept[mesh_.patches[mesh_.wedge_first[w] / 3]] = 1;
+            if (draft.spacing.wanted[0][w] || draft.spacing.wanted[1][w])
+                is_kept[mesh_.patches[mesh_.wedge_first[w] / 3]] = 1;
     std::vector<std::uint8_t> is_flawed(mesh_.patch_count, 0), is_met(mesh_.patch_count, 0);
     for (const Index p : flaws.patches) is_flawed[p] = 1;
     std::vector<Index> open;
@@ -159,25 +164,25 @@ std::vector<Index> Remesher::open_faces(Flaws& flaws, const Draft& draft, const 
     return open;
 }
 
-void Remesher::merge_ends(Draft& draft, const Spacing& spacing) const {
+void Remesher::merge_ends(Draft& draft) const {
     constexpr double share = 0.5;  // of the spacing of lines
     std::vector<double> reach;
     for (const SurfacePlace& place : draft.polygons.places) {
         double least = mesh_.diagonal;
         for (Index c = 3 * place.face; c < 3 * place.face + 3; ++c)
-            for (const auto& at : spacing.at) least = std::min(least, at[mesh_.wedges[c]]);
+            for (const auto& at : draft.spacing.at) least = std::min(least, at[mesh_.wedges[c]]);
         reach.push_back(share * least);
     }
     draft.merged = merge_line_ends(draft.polygons, reach, arrangement_rule(draft.error));
 }
 
 /// Faces around isotropic samples become triangles.
-void Remesher::add_samples(Draft& d, const Spacing& spacing) const {
+void Remesher::add_samples(Draft& d) const {
     if (options_.isotropic_samples == IsotropicSamples::none) return;
     SampleRule rule;
     rule.error = 2.0 * d.error;
     rule.everywhere = options_.isotropic_samples == IsotropicSamples::all;
-    d.samples = triangulate_around(choose_samples(d.graph, d.network, d.faces, field_, spacing, rule), d.polygons);
+    d.samples = triangulate_around(choose_samples(d.graph, d.network, d.faces, field_, d.spacing, rule), d.polygons);
 }
 
 /// Cutting may repeat an edge that is there already: such polygons get a vertex in the middle instead.
@@ -196,10 +201,11 @@ Draft Remesher::draft(double error) {
     std::size_t were_broken = 0;
     caps_.loosen(error);
     for (int round = 0;; ++round) {
-        const Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_.at(error));
+        Spacing spacing = compute_spacing(mesh_, field_, rule_of(error), caps_.at(error));
         watch_.stage("spacing");
         const double given = caps_.given(error);
         Draft d{error, given, trace_lines(mesh_, field_, spacing, trace_rule_, control_)};
+        d.spacing = std::move(spacing);
         watch_.stage("lines");
         ++result_.statistics.rounds;
         d.graph = build_graph(d.network, arrangement_rule(given));
@@ -207,19 +213,19 @@ Draft Remesher::draft(double error) {
         share_nodes(d.graph, mesh_);
         d.faces = d.graph.trace_faces(mesh_);
         Flaws flaws = find_flaws(d.graph, d.network, d.faces);
-        d.open = open_faces(flaws, d, spacing, false);
+        d.open = open_faces(flaws, d, false);
         if (round >= patience && !flaws.empty()) {
-            const std::vector<Index> given_up = open_faces(flaws, d, spacing, true);
+            const std::vector<Index> given_up = open_faces(flaws, d, true);
             d.gives_up = !given_up.empty();
             d.open.insert(d.open.end(), given_up.begin(), given_up.end());
             std::sort(d.open.begin(), d.open.end());
         }
         if (flaws.empty()) {
             d.polygons = make_polygons(d.graph, d.faces, d.open, d.counts, d.nodes);
-            merge_ends(d, spacing);
+            merge_ends(d);
             d.filled =
                 fill_flat_faces(d.network, d.graph, d.faces, d.open, d.nodes, d.merged, 0.02 * given, d.polygons);
-            add_samples(d, spacing);
+            add_samples(d);
             relieve_crowded(d);
         }
         watch_.stage("arrangement");
@@ -235,7 +241,7 @@ Draft Remesher::draft(double error) {
             }
             if (!broken.empty() && broken_rounds++ < most_broken_rounds) {
                 were_broken = broken.size();
-                caps_.refine_broken(broken, d.graph, d.faces, spacing);
+                caps_.refine_broken(broken, d.graph, d.faces, d.spacing);
                 before.emplace(std::move(d));
                 continue;
             }
@@ -248,7 +254,7 @@ Draft Remesher::draft(double error) {
             for (const Index f : flaws.faces) d.flaws.push_back(d.graph.nodes[d.graph.tail(d.faces[f][0])].point);
             return d;
         }
-        caps_.refine(flaws, d.graph, d.faces, spacing, round >= 2);
+        caps_.refine(flaws, d.graph, d.faces, d.spacing, round >= 2);
     }
 }
 
@@ -262,7 +268,7 @@ double Remesher::count_of(const Draft& draft) {
 
 /// A few vertices too many are those that matter least. Where that breaks polygons, they stay as they were.
 void Remesher::trim(Draft& d, double wanted) {
-    constexpr int most_tries = 4;
+    constexpr int most_tries = 5;
     if (1.0 - wanted / count_of(d) > most_trimmed) return;
     std::vector<std::uint8_t> is_free(d.nodes.size(), 1);
     const CoarseMesh polygons = d.polygons;
@@ -279,17 +285,30 @@ void Remesher::trim(Draft& d, double wanted) {
         const std::vector<Index> broken = broken_faces(d);
         if (broken.size() <= d.broken) break;
         d.polygons = polygons, d.merged = merged;
-        for (const Index f : broken)
-            for (const Index h : d.faces[f])
-                if (const auto at = std::lower_bound(d.nodes.begin(), d.nodes.end(), d.graph.tail(h));
-                    at != d.nodes.end() && *at == d.graph.tail(h))
-                    is_free[static_cast<std::size_t>(at - d.nodes.begin())] = 0;
+        // The polygons that became these stay, and after a while those around them.
+        std::vector<std::uint8_t> stays(polygons.points.size(), 0);
+        for (Index q = 0; q < polygons.polygon_count(); ++q)
+            if (std::binary_search(broken.begin(), broken.end(), polygons.parent(q)))
+                for (const Index v : polygons.polygon(q)) stays[v] = 1;
+        for (int ring = 1; ring < tries; ++ring) mark_around(polygons, stays);
+        for (Index v = 0; v < is_free.size(); ++v)
+            if (stays[v] != 0) is_free[v] = 0;
     }
     watch_.stage("trimming");
 }
 
+/// The last network will do again where it has a few vertices too many and can be trimmed.
 void Remesher::search(double wanted) {
+    constexpr double most_again = 0.12, enough = 1.02;
+    const double before = untrimmed_ ? count_of(*untrimmed_) : 0.0;
+    if (before >= wanted && before * (1.0 - most_again) <= wanted) {
+        best_.emplace(*untrimmed_);
+        trim(*best_, wanted);
+        if (count_of(*best_) <= enough * wanted) return;
+    }
+    best_.reset();
     find_network(wanted);
+    if (best_) untrimmed_.emplace(*best_);
     if (best_ && best_->flaws.empty() && !control_.cancelled()) trim(*best_, wanted);
 }
 
@@ -299,11 +318,16 @@ void Remesher::find_network(double wanted) {
     double best_miss = 1e300;
     const auto miss_of = [](double off, const Draft& d) {
         constexpr double of_mending = 0.02, of_broken = 0.002, of_giving_up = 1.0;  // mending changes the count again
-        return (off > 0.0 ? 0.25 * off : -off) + (d.broken > 0 ? of_mending : 0.0) +
-               of_broken * static_cast<double>(d.broken) + (d.gives_up ? of_giving_up : 0.0);
+        constexpr double of_too_few = 3.0;
+        const bool can_be_trimmed = off > 0.0 && off < -std::log(1.0 - most_trimmed);
+        return (can_be_trimmed ? 0.25 * off
+                : off > 0.0    ? off
+                               : -of_too_few * off) +
+               (d.broken > 0 ? of_mending : 0.0) + of_broken * static_cast<double>(d.broken) +
+               (d.gives_up ? of_giving_up : 0.0);
     };
     int networks = 0;
-    /// How far the count is off, as a logarithm; empty: near enough, or cancelled.
+    /// How far the count is off a little more than what is wanted, as a logarithm; empty: near enough, or cancelled.
     const auto attempt = [&](double error) -> std::optional<double> {
         // What one error needs so that faces are disks, a larger one does not.
         caps_.forget_flaws();
@@ -313,17 +337,18 @@ void Remesher::find_network(double wanted) {
         // Of what is given up, nodes tell how many vertices there would be.
         const double count = d.gives_up ? static_cast<double>(d.nodes.size()) : count_of(d);
         const double off = std::log(std::max(count, 1.0) / wanted);
+        constexpr double aim = 0.04;
         const bool whole = d.flaws.empty();
         if (!best_ || (whole && miss_of(off, d) < best_miss)) {
             best_miss = whole ? miss_of(off, d) : 1e300;
             best_.emplace(std::move(d));
         }
         if (best_miss < (networks < 4 ? 0.015 : 0.03)) return std::nullopt;
-        return off;
+        return off - aim;
     };
     trace_rule_ = {};
     balance_ = 1.0;
-    const double start = start_error(1.02 * wanted);
+    const double start = start_error(1.05 * wanted);
     struct End {
         double knob = 0.0, off = 0.0;
     };
@@ -408,7 +433,8 @@ bool Remesher::finish() {
     recuts_.clear();
     describe_polygons();
     if (!best_->flaws.empty()) return false;
-    const CoarseMesh polygons = cut(best_->polygons);
+    CoarseMesh polygons = cut(best_->polygons);
+    if (options_.placement) even_out(mesh_, field_, best_->spacing, *tree_, polygons);
     CoarseMesh coarse = polygons;
     fill_open_faces(best_->layout(), {input_, *tree_, mesh_.diagonal, true}, mending_rule(0.0), coarse, control_);
     watch_.stage("outputs");
@@ -476,10 +502,16 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
     s.mended_regions = report.regions;
     s.mended_triangles = report.triangles;
     s.cut_faces = report.cut_faces;
-    if (options_.placement && error == 0.0 && report.regions > 0 && report.left.empty())
-        place_around(
-            mesh_, judge, report.first_added, [&](CoarseMesh& m, const PlacementOptions& how) { return place(m, how); },
-            [&](CoarseMesh& m) { return judge_input(m, judge).polygons; }, mesh);
+    if (options_.placement && error == 0.0 && report.regions > 0 && report.left.empty()) {
+        const auto place_all = [&] {
+            place_around(
+                mesh_, judge, report.first_added,
+                [&](CoarseMesh& m, const PlacementOptions& how) { return place(m, how); },
+                [&](CoarseMesh& m) { return judge_input(m, judge).polygons; }, mesh);
+        };
+        place_all();
+        if (cut_last_peaks(judge, mesh)) place_all();
+    }
     rescue_components(best_->layout(), judge, {mending_rule(error).tolerance, report.left}, mesh, control_);
     watch_.stage("mending");
     return mesh;
@@ -540,7 +572,6 @@ void Remesher::finish_count() {
             const double part = std::clamp((*many)[1] / ((*many)[1] - (*few)[1]), 0.2, 0.8);
             aim = (*many)[0] + part * ((*few)[0] - (*many)[0]);
         }
-        best_.reset();
         const double least_network = network;
         search(std::max(std::exp(aim), 4.0));
         if (control_.cancelled() || !best_) return;

@@ -26,6 +26,7 @@ std::string text_of(const Point3& p);
 struct Draft {
     double knob = 0.0, error = 0.0;  ///< the error asked of lines, and the one that they were given
     Network network;
+    Spacing spacing{};  ///< of its lines
     Graph graph{};
     std::vector<std::vector<Index>> faces{};
     std::vector<Index> nodes{};  ///< of the graph, per vertex of the polygons
@@ -37,6 +38,7 @@ struct Draft {
     std::size_t samples = 0;      ///< that polygons are triangulated around
     std::vector<Point3> flaws{};  ///< places that no refinement has mended
     std::size_t broken = 0;       ///< faces whose polygons will be mended
+    double reach = 0.0;           ///< of its polygons, see reach_of: creases are missed that are farther away
     bool gives_up = false;        ///< what no line has mended is open, where lines should be, too
 
     Layout layout() const { return {network, graph, faces, nodes, merged, open, filled}; }
@@ -64,10 +66,10 @@ private:
     ArrangementRule arrangement_rule(double error) const;
     double start_error(double count = 0.0);
     Draft draft(double error);
-    std::vector<Index> open_faces(Flaws& flaws, const Draft& draft, const Spacing& spacing, bool all) const;
-    std::vector<Index> broken_faces(const Draft& draft);
-    void merge_ends(Draft& draft, const Spacing& spacing) const;
-    void add_samples(Draft& draft, const Spacing& spacing) const;
+    std::vector<Index> open_faces(Flaws& flaws, const Draft& draft, bool all) const;
+    std::vector<Index> broken_faces(Draft& draft);
+    void merge_ends(Draft& draft) const;
+    void add_samples(Draft& draft) const;
     void relieve_crowded(Draft& draft);
     double count_of(const Draft& draft);
     double wanted_count() const {
@@ -97,6 +99,8 @@ private:
     void come_near(double limit);
     void drop_harmful_recuts();
     void lower_peaks();
+    std::vector<Index> find_peaks() const;
+    bool cut_last_peaks(Judge& judge, CoarseMesh& mesh);
     bool cut_far(const std::vector<Index>& far, bool may_add, CoarseMesh& mesh);
     void take_places(const CoarseMesh& mesh);
     double wanted_error() const { return options_.error.value_or(default_remesh_error).resolve(mesh_.diagonal); }
@@ -134,7 +138,7 @@ private:
     std::vector<double> farthest_;  ///< ... and how far its polygons are
     double rms_ = 0.0;              ///< of that
     std::vector<Recut> recuts_;
-    std::optional<Draft> best_;
+    std::optional<Draft> best_, untrimmed_;
 };
 
 }  // namespace certa::remeshing
