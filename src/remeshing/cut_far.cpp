@@ -62,14 +62,52 @@ public:
         Point3 middle;
         for (const Index v : ring) middle = middle + (1.0 / static_cast<double>(ring.size())) * mesh_.points[v];
         if (farthest * farthest < 0.25 * input_.find_nearest(middle).squared_distance) beyond = no_index;
-        if (beyond != no_index && is_waiting) return;
+        if (beyond == no_index) {
+            cut_around(q, no_index, no_index, middle);
+            return;
+        }
+        if (is_waiting) return;
+        const auto at = std::find(ring.begin(), ring.end(), from);
+        const Index to = at + 1 == ring.end() ? ring.front() : at[1];
+        cut_around(q, beyond, from, 0.5 * (mesh_.points[from] + mesh_.points[to]));
+    }
+    /// The new vertex is at a given point of the polygon. Beside a side, what is beyond that is cut, too.
+    void cut_around_point(Index q, const Point3& point) {
+        constexpr double beside = 0.2;  // of the side
+        if (is_used_[q] != 0) return;
+        const auto ring = mesh_.polygon(q);
+        double nearest = beside;
+        std::size_t side = ring.size();
+        for (std::size_t i = 0; i < ring.size(); ++i) {
+            const Point3 &a = mesh_.points[ring[i]], &b = mesh_.points[ring[(i + 1) % ring.size()]];
+            const double length = distance(a, b), away = norm(cross(b - a, point - a)) / (length * length);
+            if (!(away < nearest)) continue;
+            nearest = away, side = i;
+        }
+        if (side == ring.size()) {
+            cut_around(q, no_index, no_index, point);
+            return;
+        }
+        const Index a = ring[side], b = ring[(side + 1) % ring.size()];
+        if (std::binary_search(sides_.features.begin(), sides_.features.end(), pair_key(a, b))) return;
+        const auto& both = sides_.beside.at(pair_key(a, b));
+        const Index beyond = both[0] == q ? both[1] : both[0];
+        if (beyond != no_index && is_used_[beyond] == 0) cut_around(q, beyond, a, point);
+    }
+
+    std::vector<Recut> take() { return std::move(recuts_); }
+
+private:
+    /// Triangles around a vertex nearest to `place` for a polygon and, where there is one, for what is beyond its side
+    /// that begins in `from`.
+    void cut_around(Index q, Index beyond, Index from, const Point3& place) {
+        const auto ring = mesh_.polygon(q);
         Ring whole{ring.begin(), ring.end()};
         Recut recut{{whole}, {}};
         if (beyond != no_index) {
             const auto other = mesh_.polygon(beyond);
             const auto at = std::find(whole.begin(), whole.end(), from);
             const Index to = at + 1 == whole.end() ? whole.front() : at[1];
-            middle = 0.5 * (mesh_.points[from] + mesh_.points[to]);
             const auto start = static_cast<std::size_t>(std::find(other.begin(), other.end(), from) - other.begin());
             if (other[(start + other.size() - 1) % other.size()] != to) return;
             Ring between;
@@ -81,16 +119,12 @@ public:
             is_used_[beyond] = 1;
         }
         is_used_[q] = 1;
-        const core::NearestPoint nearest = input_.find_nearest(middle);
+        const core::NearestPoint nearest = input_.find_nearest(place);
         const Index center = mesh_.add_vertex(nearest.point, {nearest.triangle, nearest.weights});
         for (std::size_t i = 0; i < whole.size(); ++i)
             recut.after.push_back({whole[i], whole[(i + 1) % whole.size()], center});
         recuts_.push_back(std::move(recut));
     }
-
-    std::vector<Recut> take() { return std::move(recuts_); }
-
-private:
     static bool has_side(std::span<const Index> ring, Index a, Index b) {
         for (std::size_t i = 0; i < ring.size(); ++i)
             if (ring[i] == a && ring[(i + 1) % ring.size()] == b) return true;
@@ -120,6 +154,13 @@ std::vector<Recut> cut_far_polygons(CoarseMesh& mesh, const std::vector<Index>& 
         if (mesh.polygon(q).size() > 3) cutter.cut_along_diagonal(q);
     for (const Index q : far)
         if (may_add && mesh.polygon(q).size() == 3) cutter.cut_around_vertex(q);
+    return cutter.take();
+}
+
+std::vector<Recut> cut_around_points(CoarseMesh& mesh, const std::vector<MissedCrease>& points,
+                                     const core::TriangleTree& input) {
+    Cutter cutter(mesh, input);
+    for (const MissedCrease& missed : points) cutter.cut_around_point(missed.polygon, missed.point);
     return cutter.take();
 }
 

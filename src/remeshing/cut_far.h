@@ -2,6 +2,7 @@
 // What is done to polygons that are too far from the input, before they are given up.
 #include "core/triangle_tree.h"
 #include "remeshing/join_triangles.h"
+#include "remeshing/missed_creases.h"
 
 namespace certa::remeshing {
 
@@ -11,5 +12,9 @@ namespace certa::remeshing {
 /// in two of the cuts, so that some of `far` may have to wait for the next time. Deterministic.
 std::vector<Recut> cut_far_polygons(CoarseMesh& mesh, const std::vector<Index>& far, const core::TriangleTree& input,
                                     bool may_add);
+
+/// Triangles around a new vertex at each of these places, the first one where a polygon has several; the same besides.
+std::vector<Recut> cut_around_points(CoarseMesh& mesh, const std::vector<MissedCrease>& points,
+                                     const core::TriangleTree& input);
 
 }  // namespace certa::remeshing

@@ -176,6 +176,7 @@ void Remesher::meet_error() {
         refine_where_far(error, 0.9 * wanted);
         if (share > 0.025 && round < 4) continue;
         come_near(wanted / 1.03);
+        cover_creases();
         std::optional<Attempt> next = attempt_error();
         if (control_.cancelled()) return;
         if (!next) continue;

@@ -170,7 +170,7 @@ private:
             for (Region& region : regions_) {
                 if (find_patch(region) != nullptr) continue;
                 again = true;
-                for (const Index f : patcher_.grow(region.faces)) take_in(f);
+                for (const Index f : patcher_.grow_for_patch(region.faces)) take_in(f);
             }
         }
     }

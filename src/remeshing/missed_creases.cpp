@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 
 #include "remeshing/templates.h"
 
@@ -21,10 +22,9 @@ core::TriangleTree tree_of(const CoarseMesh& triangles) {
     return {triangles.points, filled};
 }
 
-}  // namespace
-
-double add_missed_creases(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result, double limit,
-                          std::vector<Index>& polygons) {
+/// Returns how far the farthest is.
+double visit_missed_creases(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result, double limit,
+                            const std::function<void(const MissedCrease&)>& visit) {
     if (mesh.minor_edges.empty() && mesh.minor_corners.empty() && mesh.curves.empty()) return 0.0;
     std::vector<Triangle> edges, vertices;
     const auto id = [](Index v) { return VertexId{v}; };
@@ -43,7 +43,7 @@ double add_missed_creases(const WorkMesh& mesh, const Judge& judge, const Coarse
     const auto demand = [&](const core::TriangleTree& tree, const Point3& p) {
         const double away = std::sqrt(tree.find_nearest(p).squared_distance);
         farthest = std::max(farthest, away);
-        if (away > limit) polygons.push_back(polygon_of[surface.find_nearest(p).triangle]);
+        if (away > limit) visit({polygon_of[surface.find_nearest(p).triangle], p, away});
     };
     for (const Index v : mesh.minor_corners) demand(vertex_tree, mesh.points[v]);
     std::vector<Index> creases = mesh.minor_edges;
@@ -57,6 +57,23 @@ double add_missed_creases(const WorkMesh& mesh, const Judge& judge, const Coarse
         for (double k = 0.0; k <= steps; k += 1.0) demand(edge_tree, mesh.point_on(e, k / steps));
     }
     return farthest;
+}
+
+}  // namespace
+
+std::vector<MissedCrease> find_missed_creases(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result,
+                                              double limit) {
+    std::vector<MissedCrease> missed;
+    visit_missed_creases(mesh, judge, result, limit, [&](const MissedCrease& m) { missed.push_back(m); });
+    std::stable_sort(missed.begin(), missed.end(),
+                     [](const MissedCrease& l, const MissedCrease& r) { return l.distance > r.distance; });
+    return missed;
+}
+
+double add_missed_creases(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result, double limit,
+                          std::vector<Index>& polygons) {
+    return visit_missed_creases(mesh, judge, result, limit,
+                                [&](const MissedCrease& m) { polygons.push_back(m.polygon); });
 }
 
 double reach_of(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result) {

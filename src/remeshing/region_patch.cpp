@@ -70,6 +70,33 @@ std::vector<Index> RegionPatcher::grow(const std::vector<Index>& faces) const {
     return grown;
 }
 
+std::vector<Index> RegionPatcher::rim_of(const std::vector<Index>& faces) const {
+    std::vector<Index> rim;
+    for (const Index f : faces)
+        for (const Index h : layout_.faces[f]) {
+            const Index other = owners_[h ^ 1U];
+            if (other == no_index || !std::binary_search(faces.begin(), faces.end(), other)) rim.push_back(h);
+        }
+    return rim;
+}
+
+std::vector<Index> RegionPatcher::pinches(const std::vector<Index>& rim) const {
+    std::vector<Index> starts, twice;
+    for (const Index h : rim) starts.push_back(layout_.graph.tail(h));
+    std::sort(starts.begin(), starts.end());
+    for (std::size_t i = 1; i < starts.size(); ++i)
+        if (starts[i] == starts[i - 1]) twice.push_back(starts[i]);
+    return twice;
+}
+
+std::vector<Index> RegionPatcher::grow_for_patch(const std::vector<Index>& faces) const {
+    std::vector<Index> grown = faces;
+    for (const Index n : pinches(rim_of(faces)))
+        grown.insert(grown.end(), node_faces_[n].begin(), node_faces_[n].end());
+    sort_unique(grown);
+    return grown.size() > faces.size() ? grown : grow(faces);
+}
+
 bool RegionPatcher::is_whole(const std::vector<Index>& faces) const {
     std::vector<Index> all;
     for (const Index f : faces) all.push_back(face_components_[f]);
@@ -101,17 +128,8 @@ std::optional<RegionPatch> RegionPatcher::make(const std::vector<Index>& faces) 
             if (std::binary_search(components.begin(), components.end(), mesh_.components[f])) triangles.push_back(f);
         return cut_surface(layout_.network, layout_.graph, {}, triangles, names_);
     }
-    std::vector<Index> rim;
-    std::vector<Index> starts;
-    for (const Index f : faces)
-        for (const Index h : layout_.faces[f]) {
-            const Index other = owners_[h ^ 1U];
-            if (other != no_index && std::binary_search(faces.begin(), faces.end(), other)) continue;
-            rim.push_back(h);
-            starts.push_back(layout_.graph.tail(h));
-        }
-    std::sort(starts.begin(), starts.end());
-    if (std::adjacent_find(starts.begin(), starts.end()) != starts.end()) return std::nullopt;  // touches itself
+    const std::vector<Index> rim = rim_of(faces);
+    if (!pinches(rim).empty()) return std::nullopt;
     std::optional<RegionPatch> patch = cut_surface(layout_.network, layout_.graph, rim, {}, names_);
     // Cycles around what is no disk do not tell its topology; the cut itself keeps it.
     const bool is_told = std::none_of(faces.begin(), faces.end(), [&](Index f) {

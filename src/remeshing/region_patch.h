@@ -67,6 +67,9 @@ public:
     std::optional<RegionPatch> make(const std::vector<Index>& faces) const;
     /// Faces that share a node with some of these, and these.
     std::vector<Index> grow(const std::vector<Index>& faces) const;
+    /// The fewest more that a region without a patch may need: those at nodes where the rim touches itself, else those
+    /// all around.
+    std::vector<Index> grow_for_patch(const std::vector<Index>& faces) const;
     /// Whether all faces of the components that these lie in are there.
     bool is_whole(const std::vector<Index>& faces) const;
     Index face_count() const { return static_cast<Index>(layout_.faces.size()); }
@@ -74,6 +77,9 @@ public:
     Index face_beside(Index halfedge) const { return owners_[halfedge]; }
 
 private:
+    /// Half-edges with the region on the left, and the nodes that more than one of them starts from.
+    std::vector<Index> rim_of(const std::vector<Index>& faces) const;
+    std::vector<Index> pinches(const std::vector<Index>& rim) const;
     std::int64_t characteristic(const std::vector<Index>& faces) const;
 
     Layout layout_;

@@ -21,7 +21,6 @@
 #include "remeshing/check_options.h"
 #include "remeshing/coarsen.h"
 #include "remeshing/crowded.h"
-#include "remeshing/even_out.h"
 #include "remeshing/flat_faces.h"
 #include "remeshing/give_result.h"
 #include "remeshing/guides.h"
@@ -122,16 +121,16 @@ bool Remesher::prepare() {
     return !control_.cancelled();
 }
 
-/// Faces whose polygons turn away or meet others: too coarse for what the surface does there.
-std::vector<Index> Remesher::broken_faces(Draft& draft) {
+/// Faces whose polygons turn away or meet others, or miss creases by much more than they are away elsewhere: too coarse
+/// for what the surface does there. `reach` grows to what they are away.
+std::vector<Index> Remesher::broken_faces(const Draft& draft, CoarseMesh polygons, double& reach) {
     Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
-    CoarseMesh polygons = cut(draft.polygons);
     std::vector<Index> faces;
     std::vector<Index> broken = judge_input(polygons, judge).polygons;
     if (draft.open.size() == draft.filled.size() && !(mesh_.minor_edges.empty() && mesh_.minor_corners.empty())) {
         constexpr double part = 0.8;  // placement brings polygons nearer, and then fewer creases are near enough
-        draft.reach = std::max(draft.reach, reach_of(mesh_, judge, polygons));
-        add_missed_creases(mesh_, judge, polygons, part * draft.reach, broken);
+        reach = std::max(reach, reach_of(mesh_, judge, polygons));
+        add_missed_creases(mesh_, judge, polygons, part * reach, broken);
     }
     for (const Index q : broken)
         if (const Index f = polygons.parent(q);
@@ -230,7 +229,7 @@ Draft Remesher::draft(double error) {
         }
         watch_.stage("arrangement");
         if (flaws.empty() && !control_.cancelled()) {
-            std::vector<Index> broken = broken_faces(d);
+            std::vector<Index> broken = broken_faces(d, cut(d.polygons), d.reach);
             d.broken = broken.size();
             watch_.stage("damage");
             constexpr double dear = 30.0;  // vertices for a face that is mended no more
@@ -282,7 +281,7 @@ void Remesher::trim(Draft& d, double wanted) {
                                             is_free, d.polygons));
             relieve_crowded(d);
         }
-        const std::vector<Index> broken = broken_faces(d);
+        const std::vector<Index> broken = broken_faces(d, cut(d.polygons), d.reach);
         if (broken.size() <= d.broken) break;
         d.polygons = polygons, d.merged = merged;
         // The polygons that became these stay, and after a while those around them.
@@ -434,7 +433,7 @@ bool Remesher::finish() {
     describe_polygons();
     if (!best_->flaws.empty()) return false;
     CoarseMesh polygons = cut(best_->polygons);
-    if (options_.placement) even_out(mesh_, field_, best_->spacing, *tree_, polygons);
+    if (options_.placement) even_cells(polygons);
     CoarseMesh coarse = polygons;
     fill_open_faces(best_->layout(), {input_, *tree_, mesh_.diagonal, true}, mending_rule(0.0), coarse, control_);
     watch_.stage("outputs");
@@ -465,7 +464,11 @@ bool Remesher::finish() {
         placed_.places[v] = filled_.places[v];
     }
     if (options_.output == RemeshOutput::quad_dominant && recuts_.empty()) recuts_ = find_recuts(placed_);
-    if (places && wanted_count() > 0.0) lower_peaks();
+    if (places) undo_evening();
+    if (places && wanted_count() > 0.0) {
+        lower_peaks();
+        cover_creases();
+    }
     return true;
 }
 
@@ -544,11 +547,13 @@ void Remesher::finish_count() {
         give_input(options_.vertices || options_.faces ? mesh_.diagonal : best_->error);
         return;
     }
+    constexpr double of_mending = 0.15, enough = 0.03;  // of a result that is all mended; in logarithms of the count
     const double wanted = wanted_count();
     std::optional<Attempt> kept;
     double least = 1e300, network = 0.0, aim = std::log(wanted);
     std::optional<std::array<double, 2>> few,
         many;  // logarithms: what the network had, how far off it came out
+    std::vector<double> aims;
     // What mending adds, the network has to do without.
     for (int round = 0; round < 6; ++round) {
         CoarseMesh mesh = mended(placed_, 0.0);
@@ -556,21 +561,25 @@ void Remesher::finish_count() {
         const double count = final_count(mesh), off = std::log(count / wanted);
         const double drafted = count_of(*best_);
         const bool is_mended = std::abs(count - drafted) > 0.01 * wanted;
-        if (std::abs(off) < least) {
-            least = std::abs(off);
+        const double miss = std::abs(off) + of_mending * static_cast<double>(result_.statistics.mended_triangles) /
+                                                static_cast<double>(mesh.polygon_count());
+        if (miss < least) {
+            least = miss;
             network = drafted;
             kept.emplace(Attempt{std::move(*best_), std::move(mesh), result_.statistics});
         }
-        // An aim that was lowered for nothing may rise again.
-        if (least < 0.03 || (round == 0 && !is_mended)) break;
-        aim = std::log(drafted);
-        (off > 0.0 ? many : few) = {aim, off};
-        // The next network may need less of it.
-        const double most_step = round == 0 ? 0.1 : 1.0;
-        aim -= std::clamp(off, -most_step, most_step);
-        if (many && few) {
-            const double part = std::clamp((*many)[1] / ((*many)[1] - (*few)[1]), 0.2, 0.8);
-            aim = (*many)[0] + part * ((*few)[0] - (*many)[0]);
+        if (least < enough || (round == 0 && !is_mended)) break;
+        // As much as it was this time, unless that has been tried; the next network may need less of it.
+        const double tried = std::log(drafted), most_step = round == 0 ? 0.1 : 1.0;
+        (off > 0.0 ? many : few) = {tried, off};
+        aims.push_back(aim);
+        aim = std::max(std::log(wanted) - std::log(count / drafted), tried - most_step);
+        if (std::any_of(aims.begin(), aims.end(), [&](double a) { return std::abs(a - aim) < 0.01; })) {
+            aim = tried - std::clamp(off, -most_step, most_step);
+            if (many && few) {
+                const double part = std::clamp((*many)[1] / ((*many)[1] - (*few)[1]), 0.2, 0.8);
+                aim = (*many)[0] + part * ((*few)[0] - (*many)[0]);
+            }
         }
         const double least_network = network;
         search(std::max(std::exp(aim), 4.0));

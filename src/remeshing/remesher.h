@@ -10,6 +10,7 @@
 #include "remeshing/give_result.h"
 #include "remeshing/join_triangles.h"
 #include "remeshing/mend.h"
+#include "remeshing/missed_creases.h"
 #include "remeshing/nearer_origin.h"
 #include "remeshing/placement.h"
 #include "remeshing/stitch.h"
@@ -67,7 +68,9 @@ private:
     double start_error(double count = 0.0);
     Draft draft(double error);
     std::vector<Index> open_faces(Flaws& flaws, const Draft& draft, bool all) const;
-    std::vector<Index> broken_faces(Draft& draft);
+    std::vector<Index> broken_faces(const Draft& draft, CoarseMesh polygons, double& reach);
+    void even_cells(CoarseMesh& polygons);
+    void undo_evening();
     void merge_ends(Draft& draft) const;
     void add_samples(Draft& draft) const;
     void relieve_crowded(Draft& draft);
@@ -99,6 +102,8 @@ private:
     void come_near(double limit);
     void drop_harmful_recuts();
     void lower_peaks();
+    std::vector<MissedCrease> missed_creases(const CoarseMesh& mesh, const Judge& judge) const;
+    void cover_creases();
     std::vector<Index> find_peaks() const;
     bool cut_last_peaks(Judge& judge, CoarseMesh& mesh);
     bool cut_far(const std::vector<Index>& far, bool may_add, CoarseMesh& mesh);
