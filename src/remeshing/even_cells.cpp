@@ -28,21 +28,28 @@ void Remesher::even_cells(CoarseMesh& polygons) {
 }
 
 /// What will be mended gets corners where the network has its nodes: around it, vertices go back there before, and are
-/// placed again.
+/// placed again, if that leaves less to mend.
 void Remesher::undo_evening() {
     constexpr int rings = 2;
     Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
+    CoarseMesh mesh;
+    const auto find_unsound = [&] {
+        mesh = recut(placed_, recuts_);
+        std::vector<Index> polygons;
+        for (const MissedCrease& missed : missed_creases(mesh, judge)) polygons.push_back(missed.polygon);
+        for (const Index q : judge_input(mesh, judge).polygons) polygons.push_back(q);
+        sort_unique(polygons);
+        return polygons;
+    };
+    const std::vector<Index> unsound = find_unsound();
+    if (unsound.empty()) return;
     std::vector<std::uint8_t> goes_back(placed_.points.size(), 0);
-    const auto mark = [&](const CoarseMesh& mesh, Index q) {
+    for (const Index q : unsound)
         for (const Index v : mesh.polygon(q))
             if (v < goes_back.size()) goes_back[v] = 1;
-    };
-    CoarseMesh mesh = recut(placed_, recuts_);
-    for (const MissedCrease& missed : missed_creases(mesh, judge)) mark(mesh, missed.polygon);
-    for (const Index q : judge_input(mesh, judge).polygons) mark(mesh, q);
-    if (std::all_of(goes_back.begin(), goes_back.end(), [](std::uint8_t b) { return b == 0; })) return;
     for (int ring = 0; ring < rings; ++ring) mark_around(placed_, goes_back);
     const CoarseMesh& network = best_->polygons;
+    const CoarseMesh filled = filled_, placed = placed_;
     for (Index v = 0; v < network.points.size(); ++v)
         if (goes_back[v] != 0) filled_.points[v] = network.points[v], filled_.places[v] = network.places[v];
     PlacementOptions options;
@@ -51,6 +58,7 @@ void Remesher::undo_evening() {
     CoarseMesh whole = recut(filled_, recuts_);
     place(whole, options);
     take_places(whole);
+    if (find_unsound().size() >= unsound.size()) filled_ = filled, placed_ = placed;
 }
 
 }  // namespace certa::remeshing
