@@ -1,24 +1,20 @@
 // Short creases that polygons miss: a vertex on each, before mending would have to put triangles of the input there.
-#include <certa/distance.h>
-#include <certa/io.h>
+#include <cmath>
 
 #include "remeshing/cut_far.h"
 #include "remeshing/remesher.h"
 
 namespace certa::remeshing {
 
-/// Points of creases that are farther away than mending will allow. That goes by the bound on the distance, which takes
-/// a while: first by what is surely less.
+/// Points of creases that are farther away than mending will allow, or nearly so.
 std::vector<MissedCrease> Remesher::missed_creases(const CoarseMesh& mesh, const Judge& judge) const {
-    constexpr double safely = 0.97, of_error = 0.85, of_reach = 0.9;
+    constexpr double nearly = 0.97, of_error = 0.85;
     if (wanted_count() == 0.0) return find_missed_creases(mesh_, judge, mesh, of_error * wanted_error());
-    if (find_missed_creases(mesh_, judge, mesh, of_reach * reach_of(mesh_, judge, mesh)).empty()) return {};
-    PolygonMesh polygons{mesh.points, {}, mesh.offsets};
-    for (const Index v : mesh.corners) polygons.corners.push_back(VertexId{v});
-    DistanceOptions options;
-    options.samples = 10000;
-    const double bound = measure_distance(polygons, make_polygon_mesh(input_), options, control_).hausdorff_bound;
-    return find_missed_creases(mesh_, judge, mesh, safely * mending_rule(0.0).cover * bound);
+    CreaseRule rule = mending_rule(0.0).creases;
+    rule.of_bound *= nearly;
+    const double limit = crease_limit(rule, mesh_, judge, mesh, control_);
+    if (std::isinf(limit)) return {};
+    return find_missed_creases(mesh_, judge, mesh, limit);
 }
 
 /// Polygons are cut around points of creases that they miss, where that breaks nothing.

@@ -377,12 +377,10 @@ private:
         std::vector<Index> apart;
         if (rule_.reach > 0.0) {
             add_missed_creases(mesh_, judge_, result_, 0.9 * rule_.reach, apart);
-        } else if (broken.empty() &&
-                   add_missed_creases(mesh_, judge_, result_, huge, broken) >
-                       0.95 * rule_.cover * reach_of(mesh_, judge_, result_) &&
-                   !control_.cancelled()) {
-            // The check goes by the bound, so this does; not before all else is sound, which lowers the bound.
-            add_missed_creases(mesh_, judge_, result_, rule_.cover * bound(), apart);
+        } else if (broken.empty()) {
+            // Not before all else is sound, which lowers the bound.
+            const double limit = crease_limit(rule_.creases, mesh_, judge_, result_, control_);
+            if (limit < huge) add_missed_creases(mesh_, judge_, result_, limit, apart);
         }
         if (rule_.error > 0.0) add_far(result_, apart);
         // Where the input is, a crease may be nearer, but not what keeps no error.
@@ -505,13 +503,6 @@ private:
         return mesh;
     }
     /// The proved distance of the result, for every way to fill its polygons.
-    double bound() const {
-        DistanceOptions options;
-        options.samples = 10000;
-        return measure_distance(as_polygons(result_), make_polygon_mesh(judge_.input), options, control_)
-            .hausdorff_bound;
-    }
-
     /// Polygons where the error is not kept.
     void add_far(const CoarseMesh& mesh, std::vector<Index>& apart) const {
         constexpr std::uint64_t pieces = 200000;

@@ -2,6 +2,7 @@
 // The last stage before a result: what is broken becomes input again, as little of it as will do.
 #include "remeshing/damage.h"
 #include "remeshing/join_triangles.h"
+#include "remeshing/missed_creases.h"
 #include "remeshing/region_patch.h"
 
 namespace certa::remeshing {
@@ -12,7 +13,7 @@ struct MendingRule {
     double crease_reach = 0.0;    ///< how far a side may be from the crease that it is; polygons around are so anyway
     double error = 0.0;           ///< polygons farther than this are broken, too; 0: any distance will do
     double reach = 0.0;           ///< how far a minor crease may be from the result; 0: as far as anything is
-    double cover = 0.94;          ///< of the bound on the distance: so far creases may be from the result
+    CreaseRule creases = {};      ///< where no error is asked for
     bool all_triangles = false;   ///< neighbours that get more corners become triangles, else also quads
     std::vector<Recut> recuts = {};  ///< of the polygons, to be done first, where they do no harm ...
     bool all_recuts = false;         ///< ... or anyway: they have been looked at

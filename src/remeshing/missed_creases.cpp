@@ -4,9 +4,13 @@
 // polygons happen to have sides; how far off is too far is for the caller to say.
 #include "remeshing/missed_creases.h"
 
+#include <certa/distance.h>
+#include <certa/io.h>
+
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 
 #include "remeshing/templates.h"
 
@@ -81,6 +85,21 @@ double reach_of(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& resu
     double square = 0.0;
     for (const Point3& p : mesh.points) square = std::max(square, surface.find_nearest(p).squared_distance);
     return std::sqrt(square);
+}
+
+double crease_limit(const CreaseRule& rule, const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result,
+                    const RunControl& control) {
+    constexpr double surely = 0.95, most = 0.99, infinite = std::numeric_limits<double>::infinity();
+    std::vector<Index> unused;
+    const double farthest = add_missed_creases(mesh, judge, result, infinite, unused),
+                 reach = reach_of(mesh, judge, result);
+    if (farthest <= surely * rule.of_bound * reach || control.cancelled()) return infinite;
+    PolygonMesh polygons{result.points, {}, result.offsets};
+    for (const Index v : result.corners) polygons.corners.push_back(VertexId{v});
+    DistanceOptions options;
+    options.samples = 10000;
+    const double bound = measure_distance(polygons, make_polygon_mesh(judge.input), options, control).hausdorff_bound;
+    return std::max(rule.of_bound * bound, std::min(rule.of_reach * reach, most * bound));
 }
 
 }  // namespace certa::remeshing

@@ -25,4 +25,14 @@ double add_missed_creases(const WorkMesh& mesh, const Judge& judge, const Coarse
 /// How far the input's vertices are from the result, at most: less than the distance of the two.
 double reach_of(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result);
 
+/// How far creases may be from a result that no error is asked of. The check goes by the bound on the distance.
+struct CreaseRule {
+    double of_bound = 0.94;  ///< less than all of it, for what is still done to the mesh ...
+    double of_reach = 1.0;   ///< ... but where the distance is largest at a crease, there is nothing to gain
+};
+
+/// The same as a length. Takes a while, unless nothing is as far as that surely is: then infinite.
+double crease_limit(const CreaseRule& rule, const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result,
+                    const RunControl& control);
+
 }  // namespace certa::remeshing

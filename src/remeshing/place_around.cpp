@@ -1,25 +1,15 @@
 // A few rounds, judged as mending is.
 #include "remeshing/place_around.h"
 
-#include <certa/distance.h>
-#include <certa/io.h>
-
-#include <limits>
+#include <cmath>
 
 namespace certa::remeshing {
 namespace {
 
-/// Adds polygons that miss creases by more than the check allows, which goes by the bound on the distance.
+/// Adds polygons that miss creases by more than the check allows.
 void add_creases(const WorkMesh& surface, const Judge& judge, const CoarseMesh& mesh, std::vector<Index>& broken) {
-    constexpr double cover = 0.94, anything = std::numeric_limits<double>::infinity();
-    std::vector<Index> unused;
-    if (add_missed_creases(surface, judge, mesh, anything, unused) <= 0.9 * reach_of(surface, judge, mesh)) return;
-    PolygonMesh polygons{mesh.points, {}, mesh.offsets};
-    for (const Index v : mesh.corners) polygons.corners.push_back(VertexId{v});
-    DistanceOptions options;
-    options.samples = 10000;
-    const double bound = measure_distance(polygons, make_polygon_mesh(judge.input), options).hausdorff_bound;
-    add_missed_creases(surface, judge, mesh, cover * bound, broken);
+    const double limit = crease_limit({}, surface, judge, mesh, {});
+    if (!std::isinf(limit)) add_missed_creases(surface, judge, mesh, limit, broken);
 }
 
 }  // namespace

@@ -489,7 +489,7 @@ MendingRule Remesher::mending_rule(double error) const {
     rule.crease_reach = arrangement_rule(best_->error).crease_error;
     rule.error = error;
     rule.reach = error;
-    if (options_.subdivide > 0) rule.cover = 0.7;  // subdivision lowers the distance, and with it what is allowed
+    if (options_.subdivide > 0) rule.creases = {0.7, 0.7};  // subdivision lowers the distance, and with it what is allowed
     rule.all_triangles = options_.output == RemeshOutput::triangles;
     rule.recuts = recuts_;
     rule.all_recuts = error > 0.0;
