@@ -7,41 +7,59 @@
 
 #include <algorithm>
 #include <cmath>
-#include <queue>
+#include <numeric>
+#include <span>
 
 namespace certa::remeshing {
 namespace {
 
-void limit_growth(const WorkMesh& mesh, std::vector<double>& size, double growth) {
-    using Entry = std::pair<double, Index>;
-    std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-    /// What the neighbours of a wedge are allowed by it.
-    const auto for_neighbours = [&](Index w, const auto& visit) {
-        const auto see = [&](Index other, Index edge) { visit(other, size[w] + growth * mesh.lengths[edge]); };
-        Index c = mesh.wedge_first[w];
-        const Index first = c;
-        do {
-            see(mesh.wedges[next_of(c)], mesh.edges[c]);
-            see(mesh.wedges[previous_of(c)], mesh.edges[previous_of(c)]);
-            c = mesh.next_corner(c);
-        } while (c != no_index && c != first);
+/// Wedges that share an edge, and how long it is.
+class Neighbours {
+public:
+    explicit Neighbours(const WorkMesh& mesh) : first_(mesh.wedge_count() + 1, 0) {
+        const auto for_sides = [&](const auto& visit) {
+            for (Index h = 0; h < mesh.edges.size(); ++h) {
+                const Index a = mesh.wedges[h], b = mesh.wedges[next_of(h)], o = mesh.opposites[h];
+                // The other side of an edge has the same, unless a crease parts them.
+                if (o < h && o != no_index && mesh.wedges[o] == b && mesh.wedges[next_of(o)] == a) continue;
+                visit(a, b, mesh.edges[h]);
+                visit(b, a, mesh.edges[h]);
+            }
+        };
+        for_sides([&](Index a, Index, Index) { ++first_[a + 1]; });
+        for (std::size_t w = 1; w < first_.size(); ++w) first_[w] += first_[w - 1];
+        others_.resize(first_.back());
+        std::vector<std::size_t> at(first_.begin(), first_.end() - 1);
+        for_sides([&](Index a, Index b, Index e) { others_[at[a]++] = {b, mesh.lengths[e]}; });
+    }
+    struct Other {
+        Index wedge = no_index;
+        double distance = 0.0;
     };
-    // Most wedges limit nobody to begin with.
-    for (Index w = 0; w < size.size(); ++w) {
-        bool limits = false;
-        for_neighbours(w, [&](Index other, double reached) { limits = limits || reached < size[other]; });
-        if (limits) queue.push({size[w], w});
+    std::span<const Other> of(Index w) const {
+        return std::span(others_).subspan(first_[w], first_[w + 1] - first_[w]);
     }
-    while (!queue.empty()) {
-        const auto [value, w] = queue.top();
-        queue.pop();
-        if (value > size[w]) continue;
-        for_neighbours(w, [&](Index other, double reached) {
-            if (!(reached < size[other])) return;
-            size[other] = reached;
-            queue.push({reached, other});
-        });
-    }
+
+private:
+    std::vector<std::size_t> first_;
+    std::vector<Other> others_;
+};
+
+/// In rounds: what has become less limits its neighbours in the next. Neighbours are near in `size`, so there are few.
+void limit_growth(const Neighbours& neighbours, std::vector<double>& size, double growth) {
+    std::vector<Index> now(size.size()), next;
+    std::vector<std::uint8_t> is_next(size.size(), 0);
+    std::iota(now.begin(), now.end(), Index{0});
+    for (; !now.empty(); std::swap(now, next), next.clear())
+        for (const Index w : now) {
+            is_next[w] = 0;
+            for (const auto& [other, away] : neighbours.of(w)) {
+                const double reached = size[w] + growth * away;
+                if (!(reached < size[other])) continue;
+                size[other] = reached;
+                if (is_next[other] == 0) is_next[other] = 1, next.push_back(other);
+            }
+        }
 }
 
 std::vector<double> component_diagonals(const WorkMesh& mesh) {
@@ -61,8 +79,9 @@ std::vector<double> component_diagonals(const WorkMesh& mesh) {
 }
 
 /// What spacing is multiplied by so that areas a become a^(1 - evening), the number of cells staying as it is.
-std::vector<double> find_evening(const WorkMesh& mesh, std::array<std::vector<double>, 2> at, const SpacingRule& rule) {
-    for (auto& size : at) limit_growth(mesh, size, rule.growth);
+std::vector<double> find_evening(const WorkMesh& mesh, const Neighbours& neighbours,
+                                 std::array<std::vector<double>, 2> at, const SpacingRule& rule) {
+    for (auto& size : at) limit_growth(neighbours, size, rule.growth);
     double before = 0.0, after = 0.0;
     for (Index f = 0; f < mesh.face_count(); ++f) {
         const double area = mesh.local(f, 1).real() * mesh.local(f, 2).imag();
@@ -116,8 +135,9 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
         const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
         spacing.curved[w] = std::max(spacing.at[0][w], spacing.at[1][w]) < 0.999 * largest;
     }
+    const Neighbours neighbours(mesh);
     std::vector<double> evening;
-    if (rule.evening > 0.0) evening = find_evening(mesh, spacing.at, rule);
+    if (rule.evening > 0.0) evening = find_evening(mesh, neighbours, spacing.at, rule);
     for (std::size_t family = 0; family < 2; ++family) {
         const std::vector<double> raw = spacing.at[family];
         for (Index w = 0; w < evening.size(); ++w) {
@@ -136,7 +156,7 @@ Spacing compute_spacing(const WorkMesh& mesh, const DirectionField& field, const
         const std::vector<double>& most = rule.most[family];
         for (Index w = 0; w < most.size(); ++w)
             if (most[w] > 0.0) spacing.at[family][w] = std::min(spacing.at[family][w], most[w]);
-        limit_growth(mesh, spacing.at[family], rule.growth);
+        limit_growth(neighbours, spacing.at[family], rule.growth);
         spacing.wanted[family].resize(raw.size());
         for (Index w = 0; w < mesh.wedge_count(); ++w) {
             const double largest = rule.largest * diagonals[mesh.components[mesh.wedge_first[w] / 3]];
