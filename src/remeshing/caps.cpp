@@ -53,11 +53,11 @@ void Caps::lower_families(Index wedge, double factor, const Spacing& spacing) {
 void Caps::refine(const Flaws& flaws, const Graph& graph, const std::vector<std::vector<Index>>& faces,
                   const Spacing& spacing, bool all) {
     std::vector<bool> is_tied(mesh_.patch_count, true);
-    if (!all)
-        for (const FlawPlace& place : flaws.places) {
-            lower_near(place, graph, spacing);
-            if (place.size > 0.0) is_tied[place.patch] = false;
-        }
+    for (const FlawPlace& place : flaws.places) {
+        const bool is_rim = place.size > 0.0;
+        if (is_rim || !all) lower_near(place, graph, spacing);
+        if (is_rim) is_tied[place.patch] = false;
+    }
     patch_caps_.resize(mesh_.patch_count, 0.0);
     std::vector<bool> flawed(mesh_.patch_count, false);
     std::vector<std::array<Point3, 2>> boxes(mesh_.patch_count,

@@ -91,7 +91,7 @@ public:
             if (!widen(report)) break;
             if (report.rounds % 8 == 7) control_.report("mending", 0.95);
         }
-        if (!rule_.all_triangles) pair_in_regions();
+        if (!rule_.all_triangles && !regions_.empty()) pair_in_regions();
         report.regions = regions_.size();
         for (const Region& region : regions_) report.faces += region.faces.size(), report.triangles += region.triangles;
         for (std::size_t f = 0; f < in_set_.size(); ++f) report.cut_faces += in_set_[f] == 0 ? is_cut_[f] : 0;

@@ -44,12 +44,15 @@ double visit_missed_creases(const WorkMesh& mesh, const Judge& judge, const Coar
     const core::TriangleTree edge_tree(result.points, edges), vertex_tree(result.points, vertices),
         surface = tree_of(make_triangles(result, judge.tree));
     double farthest = 0.0;
-    const auto demand = [&](const core::TriangleTree& tree, const Point3& p) {
-        const double away = std::sqrt(tree.find_nearest(p).squared_distance);
+    const auto demand = [&](const core::TriangleTree& tree, Index& nearest, const Point3& p) {
+        const core::NearestPoint found = tree.find_nearest(p, nearest);
+        nearest = found.triangle;
+        const double away = std::sqrt(found.squared_distance);
         farthest = std::max(farthest, away);
         if (away > limit) visit({polygon_of[surface.find_nearest(p).triangle], p, away});
     };
-    for (const Index v : mesh.minor_corners) demand(vertex_tree, mesh.points[v]);
+    Index vertex = no_index, edge = no_index;
+    for (const Index v : mesh.minor_corners) demand(vertex_tree, vertex, mesh.points[v]);
     std::vector<Index> creases = mesh.minor_edges;
     for (Index e = 0; e < mesh.edge_curves.size(); ++e)
         if (mesh.edge_curves[e] != no_index) creases.push_back(e);
@@ -58,7 +61,7 @@ double visit_missed_creases(const WorkMesh& mesh, const Judge& judge, const Coar
     for (const Index e : creases) {
         constexpr double samples = 20000.0;
         const double steps = 4.0 + std::ceil(samples * mesh.lengths[e] / total);
-        for (double k = 0.0; k <= steps; k += 1.0) demand(edge_tree, mesh.point_on(e, k / steps));
+        for (double k = 0.0; k <= steps; k += 1.0) demand(edge_tree, edge, mesh.point_on(e, k / steps));
     }
     return farthest;
 }
@@ -83,7 +86,12 @@ double add_missed_creases(const WorkMesh& mesh, const Judge& judge, const Coarse
 double reach_of(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result) {
     const core::TriangleTree surface = tree_of(make_triangles(result, judge.tree));
     double square = 0.0;
-    for (const Point3& p : mesh.points) square = std::max(square, surface.find_nearest(p).squared_distance);
+    Index nearest = no_index;  // to the last vertex: the next one is mostly near
+    for (const Point3& p : mesh.points) {
+        const core::NearestPoint found = surface.find_nearest(p, nearest);
+        nearest = found.triangle;
+        square = std::max(square, found.squared_distance);
+    }
     return std::sqrt(square);
 }
 

@@ -22,7 +22,8 @@ std::vector<std::uint8_t> mark_minor(const WorkMesh& mesh) {
     return is_minor;
 }
 
-/// V - E + F.
+}  // namespace
+
 std::int64_t characteristic_of(const RegionPatch& patch) {
     std::vector<std::array<Index, 2>> edges;
     for (const auto& t : patch.triangles)
@@ -33,8 +34,6 @@ std::int64_t characteristic_of(const RegionPatch& patch) {
     return static_cast<std::int64_t>(patch.outer.size() + patch.inner.size() + patch.triangles.size()) -
            static_cast<std::int64_t>(edges.size());
 }
-
-}  // namespace
 
 RegionPatcher::RegionPatcher(const Layout& layout) : layout_(layout), mesh_(layout.network.mesh()) {
     owners_.assign(2 * layout_.graph.edges.size(), no_index);

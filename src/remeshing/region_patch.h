@@ -55,6 +55,9 @@ struct CutNames {
     std::vector<std::uint8_t> is_minor;   ///< per edge of the work mesh
 };
 
+/// V - E + F.
+std::int64_t characteristic_of(const RegionPatch& patch);
+
 class RegionPatcher {
 public:
     explicit RegionPatcher(const Layout& layout);

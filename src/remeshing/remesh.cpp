@@ -39,6 +39,7 @@
 #include "remeshing/sound_subdivision.h"
 #include "remeshing/stitch.h"
 #include "remeshing/stopwatch.h"
+#include "remeshing/surface_cut.h"
 #include "remeshing/templates.h"
 #include "remeshing/trace_lines.h"
 
@@ -151,16 +152,41 @@ std::vector<Index> Remesher::open_faces(Flaws& flaws, const Draft& draft, bool a
                 is_kept[mesh_.patches[mesh_.wedge_first[w] / 3]] = 1;
     std::vector<std::uint8_t> is_flawed(mesh_.patch_count, 0), is_met(mesh_.patch_count, 0);
     for (const Index p : flaws.patches) is_flawed[p] = 1;
+    EdgeCrossings crossings;
+    if (!flaws.patches.empty()) crossings = crossings_of(draft.network, draft.graph);
     std::vector<Index> open;
     for (Index f = 0; f < draft.faces.size(); ++f) {
         const Index p = patch_beside(draft.graph, draft.network, draft.faces[f].front());
         if (p == no_index || is_kept[p] != 0) continue;
         is_met[p] = 1;
-        if (is_flawed[p] != 0 || std::binary_search(flaws.faces.begin(), flaws.faces.end(), f)) open.push_back(f);
+        if (std::binary_search(flaws.faces.begin(), flaws.faces.end(), f) ||
+            (is_flawed[p] != 0 && !is_disk(draft.network, draft.graph, draft.faces[f], crossings)))
+            open.push_back(f);
     }
     std::erase_if(flaws.patches, [&](Index p) { return is_met[p] != 0; });
     std::erase_if(flaws.faces, [&](Index f) { return std::binary_search(open.begin(), open.end(), f); });
     return open;
+}
+
+/// Where a patch is flawed although lines tie all of it: rims of what is no disk.
+void Remesher::add_rims(const Draft& draft, Flaws& flaws) const {
+    std::vector<std::uint8_t> is_looked_at(mesh_.patch_count, 0);
+    for (const Index p : flaws.patches) is_looked_at[p] = 1;
+    for (const FlawPlace& place : flaws.places)
+        if (place.size > 0.0) is_looked_at[place.patch] = 0;
+    if (std::all_of(is_looked_at.begin(), is_looked_at.end(), [](std::uint8_t b) { return b == 0; })) return;
+    const EdgeCrossings crossings = crossings_of(draft.network, draft.graph);
+    for (const auto& face : draft.faces) {
+        const Index p = patch_beside(draft.graph, draft.network, face.front());
+        if (p == no_index || is_looked_at[p] == 0 || is_disk(draft.network, draft.graph, face, crossings)) continue;
+        FlawPlace place{p, {}, 0.0};
+        for (const Index h : face) {
+            place.nodes.push_back(draft.graph.tail(h));
+            place.size = std::max(place.size, distance(draft.graph.nodes[draft.graph.tail(h)].point,
+                                                       draft.graph.nodes[draft.graph.tail(face.front())].point));
+        }
+        flaws.places.push_back(std::move(place));
+    }
 }
 
 void Remesher::merge_ends(Draft& draft) const {
@@ -194,7 +220,7 @@ void Remesher::relieve_crowded(Draft& d) {
 }
 
 Draft Remesher::draft(double error) {
-    constexpr int patience = 6, most_rounds = 16, most_broken_rounds = 3;
+    constexpr int lonely_rounds = 2, patience = 6, most_rounds = 16, most_broken_rounds = 3;
     int broken_rounds = 0;
     std::optional<Draft> before;  // the last one without flaws, and its broken faces
     std::size_t were_broken = 0;
@@ -212,6 +238,10 @@ Draft Remesher::draft(double error) {
         share_nodes(d.graph, mesh_);
         d.faces = d.graph.trace_faces(mesh_);
         Flaws flaws = find_flaws(d.graph, d.network, d.faces);
+        if (round >= lonely_rounds && drop_islands(flaws, d.graph)) {
+            d.faces = d.graph.trace_faces(mesh_);
+            flaws = find_flaws(d.graph, d.network, d.faces);
+        }
         d.open = open_faces(flaws, d, false);
         if (round >= patience && !flaws.empty()) {
             const std::vector<Index> given_up = open_faces(flaws, d, true);
@@ -253,6 +283,7 @@ Draft Remesher::draft(double error) {
             for (const Index f : flaws.faces) d.flaws.push_back(d.graph.nodes[d.graph.tail(d.faces[f][0])].point);
             return d;
         }
+        if (round > 0) add_rims(d, flaws);
         caps_.refine(flaws, d.graph, d.faces, d.spacing, round >= 2);
     }
 }
@@ -489,7 +520,8 @@ MendingRule Remesher::mending_rule(double error) const {
     rule.crease_reach = arrangement_rule(best_->error).crease_error;
     rule.error = error;
     rule.reach = error;
-    if (options_.subdivide > 0) rule.creases = {0.7, 0.7};  // subdivision lowers the distance, and with it what is allowed
+    if (options_.subdivide > 0)
+        rule.creases = {0.7, 0.7};  // subdivision lowers the distance, and with it what is allowed
     rule.all_triangles = options_.output == RemeshOutput::triangles;
     rule.recuts = recuts_;
     rule.all_recuts = error > 0.0;

@@ -71,6 +71,7 @@ private:
     std::vector<Index> broken_faces(const Draft& draft, CoarseMesh polygons, double& reach);
     void even_cells(CoarseMesh& polygons);
     void undo_evening();
+    void add_rims(const Draft& draft, Flaws& flaws) const;
     void merge_ends(Draft& draft) const;
     void add_samples(Draft& draft) const;
     void relieve_crowded(Draft& draft);

@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <set>
 #include <unordered_map>
 #include <unordered_set>
@@ -59,6 +60,28 @@ public:
         std::sort(touched.begin(), touched.end());
         touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
         return std::all_of(touched.begin(), touched.end(), [&](Index f) { return trace_cells(f); }) && flood();
+    }
+    /// Whether the region has something of the graph inside, away from the rim.
+    bool holds_more(const EdgeCrossings& crossings) const {
+        const auto is_passed = [&](const Part& part) {
+            if (rim_parts_.contains(part)) return false;
+            if (mesh_.is_feature(part.first)) return true;
+            const auto passing = crossings.find(mesh_.edges[part.first]);
+            if (passing == crossings.end()) return false;
+            double low = -1.0, high = 2.0;
+            if (const auto found = on_edges_.find(passing->first); found != on_edges_.end()) {
+                const auto& points = found->second;
+                if (part.second > 0) low = points[part.second - 1].first;
+                if (part.second < points.size()) high = points[part.second].first;
+            }
+            return std::any_of(passing->second.begin(), passing->second.end(),
+                               [&](double t) { return t > low && t < high; });
+        };
+        for (const Cell& cell : cells_)
+            if (cell.side == Side::inside && std::any_of(cell.parts.begin(), cell.parts.end(), is_passed)) return true;
+        return std::any_of(whole_.begin(), whole_.end(), [&](Index f) {
+            return is_passed({3 * f, 0}) || is_passed({3 * f + 1, 0}) || is_passed({3 * f + 2, 0});
+        });
     }
     void add_whole(std::span<const Index> faces) { whole_.assign(faces.begin(), faces.end()); }
 
@@ -491,6 +514,29 @@ std::optional<RegionPatch> cut_surface(const Network& network, const Graph& grap
     cutter.add_whole(whole);
     if (!rim.empty() && !cutter.add_rim(rim)) return std::nullopt;
     return cutter.finish();
+}
+
+EdgeCrossings crossings_of(const Network& network, const Graph& graph) {
+    EdgeCrossings crossings;
+    for (const GraphEdge& e : graph.edges) {
+        if (!e.alive() || e.line == no_index) continue;
+        const Line& line = network.lines()[e.line];
+        for (double k = std::floor(e.from) + 1.0; k < e.to; k += 1.0) {
+            const Crossing& c = network.crossing(line.crossings[static_cast<std::size_t>(k) % line.crossings.size()]);
+            if (c.vertex == no_index) crossings[c.edge].push_back(c.t);
+        }
+    }
+    return crossings;
+}
+
+bool is_disk(const Network& network, const Graph& graph, std::span<const Index> rim, const EdgeCrossings& crossings) {
+    CutNames names;
+    names.vertices.resize(graph.nodes.size());
+    std::iota(names.vertices.begin(), names.vertices.end(), Index{0});
+    names.is_merged.assign(graph.nodes.size(), 0);
+    names.is_minor.assign(network.mesh().edge_halfedges.size(), 0);
+    SurfaceCutter cutter(network, graph, names);
+    return cutter.add_rim(rim) && !cutter.holds_more(crossings) && characteristic_of(cutter.finish()) == 1;
 }
 
 }  // namespace certa::remeshing

@@ -2,6 +2,7 @@
 // The triangles of the work mesh inside a rim of half-edges of the graph, cut along it.
 #include <optional>
 #include <span>
+#include <unordered_map>
 
 #include "remeshing/region_patch.h"
 
@@ -14,5 +15,12 @@ namespace certa::remeshing {
 /// one triangle around what is not wanted, or meets a triangle's corner in a way that says no side.
 std::optional<RegionPatch> cut_surface(const Network& network, const Graph& graph, std::span<const Index> rim,
                                        std::span<const Index> whole, const CutNames& names);
+
+/// Where lines of a graph pass edges of the work mesh, per edge.
+using EdgeCrossings = std::unordered_map<Index, std::vector<double>>;
+EdgeCrossings crossings_of(const Network& network, const Graph& graph);
+
+/// Whether a face of the graph, which passes no node twice, is a disk with this rim.
+bool is_disk(const Network& network, const Graph& graph, std::span<const Index> rim, const EdgeCrossings& crossings);
 
 }  // namespace certa::remeshing

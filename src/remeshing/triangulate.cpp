@@ -89,12 +89,15 @@ private:
         if (size > 1e-6 * longest && forward < 0.1 * size) cost += forward > 0.0 ? 1e3 : 1e6;
         return cost * square_ * std::sqrt(square_);
     }
-    double cost_of_diagonal(std::size_t a, std::size_t b) const {
+    double cost_of_diagonal(std::size_t a, std::size_t b) {
         const double length = distance(at(a), at(b));
         if (input_.empty()) return length * length * length;
         double sum = 0.0;
-        for (const double s : {0.25, 0.5, 0.75})
-            sum += input_.find_nearest((1.0 - s) * at(a) + s * at(b)).squared_distance;
+        for (const double s : {0.25, 0.5, 0.75}) {
+            const core::NearestPoint found = input_.find_nearest((1.0 - s) * at(a) + s * at(b), nearest_);
+            nearest_ = found.triangle;
+            sum += found.squared_distance;
+        }
         return length * sum / 3.0;
     }
     void collect(std::size_t i, std::size_t j, Triangles& out) const {
@@ -112,6 +115,7 @@ private:
     double square_ = 0.0;  // size of the polygon, squared
     std::vector<double> cost_;
     std::vector<std::size_t> apex_;
+    Index nearest_ = no_index;  // of the input, to the last place that was looked at: the next one is near
 };
 
 using Cut = std::vector<std::array<std::size_t, 3>>;
