@@ -126,22 +126,6 @@ Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<s
     return flaws;
 }
 
-bool drop_islands(const Flaws& flaws, Graph& graph) {
-    bool has_dropped = false;
-    for (const FlawPlace& place : flaws.places) {
-        if (place.size == 0.0) continue;
-        std::vector<Index> edges;
-        for (const Index n : place.nodes)
-            for (const Index h : graph.nodes[n].arms) edges.push_back(h / 2);
-        if (std::any_of(edges.begin(), edges.end(), [&](Index e) { return graph.edges[e].curve != no_index; }))
-            continue;
-        for (const Index e : edges)
-            if (graph.edges[e].alive()) graph.delete_edge(e);
-        has_dropped = true;
-    }
-    return has_dropped;
-}
-
 CoarseMesh make_polygons(const Graph& graph, const std::vector<std::vector<Index>>& faces, std::span<const Index> open,
                          PolygonCounts& counts, std::vector<Index>& nodes) {
     CoarseMesh coarse;

@@ -25,8 +25,6 @@ Index patch_beside(const Graph& graph, const Network& network, Index halfedge);
 /// Checks all faces: in every patch V - E + F over what lies inside it must be the patch's own, which holds exactly
 /// when each face has one rim and no handle; and no face may pass a node twice.
 Flaws find_flaws(const Graph& graph, const Network& network, const std::vector<std::vector<Index>>& faces);
-/// Deletes the parts that lines do not tie to the rest, where they are lines only. True: there were some.
-bool drop_islands(const Flaws& flaws, Graph& graph);
 
 /// The triangle of the work mesh to the left of a half-edge's beginning; no_index outside the boundary.
 Index triangle_beside(const Graph& graph, const Network& network, Index halfedge);

@@ -220,7 +220,7 @@ void Remesher::relieve_crowded(Draft& d) {
 }
 
 Draft Remesher::draft(double error) {
-    constexpr int lonely_rounds = 2, patience = 6, most_rounds = 16, most_broken_rounds = 3;
+    constexpr int patience = 6, most_rounds = 16, most_broken_rounds = 3;
     int broken_rounds = 0;
     std::optional<Draft> before;  // the last one without flaws, and its broken faces
     std::size_t were_broken = 0;
@@ -238,10 +238,6 @@ Draft Remesher::draft(double error) {
         share_nodes(d.graph, mesh_);
         d.faces = d.graph.trace_faces(mesh_);
         Flaws flaws = find_flaws(d.graph, d.network, d.faces);
-        if (round >= lonely_rounds && drop_islands(flaws, d.graph)) {
-            d.faces = d.graph.trace_faces(mesh_);
-            flaws = find_flaws(d.graph, d.network, d.faces);
-        }
         d.open = open_faces(flaws, d, false);
         if (round >= patience && !flaws.empty()) {
             const std::vector<Index> given_up = open_faces(flaws, d, true);
