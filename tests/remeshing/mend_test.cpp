@@ -182,6 +182,33 @@ TEST(RegionPatch, HasTheTopologyOfItsRegion) {
 }
 
 /// Corners of quads pulled over the opposite ones: what folds is replaced, and the checker is content.
+/// Two faces that share a node only: those at the node make one region of them, and that is all it takes.
+TEST(RegionPatch, GrowsWhereItsRimTouchesItself) {
+    const Fixture torus(generators::make_torus(2.0, 0.7, 6000, 1), 3e-3);
+    const RegionPatcher patcher(torus.layout());
+    std::size_t tried = 0;
+    for (Index n = 0; n < torus.graph.nodes.size(); ++n) {
+        const std::vector<Index>& around = patcher.faces_at(n);
+        if (around.size() != 4) continue;
+        std::vector<Index> beside;
+        for (const Index h : torus.faces[around[0]]) beside.push_back(patcher.face_beside(h ^ 1U));
+        Index across = no_index;
+        for (const Index f : around)
+            if (f != around[0] && std::find(beside.begin(), beside.end(), f) == beside.end()) across = f;
+        if (across == no_index) continue;
+        std::vector<Index> pair{around[0], across}, four = around;
+        sort_unique(pair);
+        sort_unique(four);
+        EXPECT_FALSE(patcher.make(pair).has_value());
+        EXPECT_EQ(patcher.grow_for_patch(pair), four);
+        EXPECT_GT(patcher.grow(pair).size(), four.size());
+        // What does not touch itself grows all around.
+        EXPECT_EQ(patcher.grow_for_patch(four), patcher.grow(four));
+        if (++tried == 50) break;
+    }
+    EXPECT_EQ(tried, 50U);
+}
+
 TEST(Mend, RepairsWhatIsSpoilt) {
     const TriangleMesh surface = generators::make_torus(2.0, 0.7, 1500, 1);
     const Fixture torus(surface, 6e-3);

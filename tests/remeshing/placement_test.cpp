@@ -131,6 +131,18 @@ TEST(Placement, KeepsBoundaryVerticesOnTheirCurveAndCornersWhereTheyAre) {
     EXPECT_GT(moved, 0);
 }
 
+/// Where K < 0 nothing is better than a regular grid on the surface: the noise of samples must not move it.
+TEST(Placement, SamplesDoNotDecideForNoise) {
+    std::vector<FeatureEdge> sides, coarse_sides;
+    const TriangleMesh input = triangle_mesh(polygon_mesh(make_saddle(160, sides)));
+    CoarseMesh mesh = make_saddle(22, coarse_sides);
+    mesh.feature_edges = coarse_sides;
+    const double best = error(mesh, input);
+    place_vertices(input, sides, mesh);
+    std::printf("%.4f of the grid's error\n", error(mesh, input) / best);
+    EXPECT_LT(error(mesh, input), 1.008 * best);
+}
+
 TEST(Placement, LooksAtTheBoundaryTooNotOnlyAtTheInside) {
     // Without samples of the curves the sides would get 20 % farther away, because the inside gains by it.
     std::vector<FeatureEdge> sides, coarse_sides;

@@ -317,6 +317,34 @@ TEST(CutFar, TrianglesGetAVertexOnTheInput) {
     EXPECT_EQ(inside[0].after.size(), 3U);
 }
 
+TEST(CutFar, PointsGetAVertexBesideASideOrInside) {
+    Bridge b;
+    const core::TriangleTree input(b.valley.positions, b.valley.triangles);
+    b.mesh.add_polygon(std::array<Index, 4>{0, 1, 3, 2}, 0);
+    b.mesh.add_polygon(std::array<Index, 4>{2, 3, 5, 4}, 1);
+    const Point3 middle{1.0, 0.5, 1.0}, off{0.9, 0.4, 1.0}, at_side{1.1, 0.95, 1.0};
+    CoarseMesh mesh = b.mesh;
+    const std::vector<Recut> inside = cut_around_points(mesh, {{0, middle, 0.2}, {0, off, 0.1}}, input);
+    ASSERT_EQ(inside.size(), 1U) << "the first point of a polygon counts";
+    EXPECT_EQ(inside[0].before.size(), 1U);
+    EXPECT_EQ(inside[0].after.size(), 4U);
+    EXPECT_EQ(recut(mesh, inside).polygon_count(), 5U);
+    ASSERT_EQ(mesh.points.size(), 7U);
+    EXPECT_LT(distance(mesh.points[6], input.find_nearest(middle).point), 1e-12);
+    // Next to the side that both have: both.
+    mesh = b.mesh;
+    const std::vector<Recut> beside = cut_around_points(mesh, {{0, at_side, 0.1}}, input);
+    ASSERT_EQ(beside.size(), 1U);
+    EXPECT_EQ(beside[0].before.size(), 2U);
+    EXPECT_EQ(recut(mesh, beside).polygon_count(), 6U);
+    // Sides of curves are not split, and beyond the boundary there is nothing.
+    mesh = b.mesh;
+    EXPECT_TRUE(cut_around_points(mesh, {{0, {1.0, 0.05, 1.0}, 0.1}}, input).empty());
+    mesh.feature_edges.push_back({2, 3, 0});
+    EXPECT_TRUE(cut_around_points(mesh, {{0, at_side, 0.1}}, input).empty());
+    EXPECT_EQ(mesh.points.size(), 6U);
+}
+
 TEST(JoinTriangles, SidesFarFromTheInputAreCutAnew) {
     // A valley along x = 1 below two quads whose common side bridges it from y = 0 to y = 1 ... at x = 1 +- 0.9.
     TriangleMesh valley;
