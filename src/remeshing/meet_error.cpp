@@ -185,8 +185,8 @@ void Remesher::meet_error() {
         if (kept && cost > 0.98 * cost_of(*kept)) break;
         kept.emplace(std::move(*next));
         if (3 * s.mended_triangles > kept->mesh.polygon_count()) {
-            if (!(error > first)) break;  // closer lines have not helped so far either
-            error = 0.5 * first;          // too far apart for the topology, whatever the error allows
+            // Too far apart for the topology, whatever the error allows.
+            error = error > first ? 0.5 * first : 0.8 * error;
             continue;
         }
         if (double(s.mended_triangles) + double(s.cut_faces) < 0.03 * double(kept->mesh.polygon_count())) break;
