@@ -604,7 +604,9 @@ void Remesher::finish_count() {
         aim = std::max(std::log(wanted) - std::log(count / drafted), tried - most_step);
         if (std::any_of(aims.begin(), aims.end(), [&](double a) { return std::abs(a - aim) < 0.01; })) {
             aim = tried - std::clamp(off, -most_step, most_step);
-            if (many && few) {
+            if (!is_mended) {
+                aim = 0.5 * (tried + std::log(wanted));
+            } else if (many && few) {
                 const double part = std::clamp((*many)[1] / ((*many)[1] - (*few)[1]), 0.2, 0.8);
                 aim = (*many)[0] + part * ((*few)[0] - (*many)[0]);
             }
