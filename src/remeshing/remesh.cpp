@@ -152,15 +152,15 @@ std::vector<Index> Remesher::open_faces(Flaws& flaws, const Draft& draft, bool a
                 is_kept[mesh_.patches[mesh_.wedge_first[w] / 3]] = 1;
     std::vector<std::uint8_t> is_flawed(mesh_.patch_count, 0), is_met(mesh_.patch_count, 0);
     for (const Index p : flaws.patches) is_flawed[p] = 1;
-    EdgeCrossings crossings;
-    if (!flaws.patches.empty()) crossings = crossings_of(draft.network, draft.graph);
+    std::optional<DiskTest> is_disk;
+    if (!flaws.patches.empty()) is_disk.emplace(draft.network, draft.graph);
     std::vector<Index> open;
     for (Index f = 0; f < draft.faces.size(); ++f) {
         const Index p = patch_beside(draft.graph, draft.network, draft.faces[f].front());
         if (p == no_index || is_kept[p] != 0) continue;
         is_met[p] = 1;
         if (std::binary_search(flaws.faces.begin(), flaws.faces.end(), f) ||
-            (is_flawed[p] != 0 && !is_disk(draft.network, draft.graph, draft.faces[f], crossings)))
+            (is_flawed[p] != 0 && !(*is_disk)(draft.faces[f])))
             open.push_back(f);
     }
     std::erase_if(flaws.patches, [&](Index p) { return is_met[p] != 0; });
@@ -175,10 +175,10 @@ void Remesher::add_rims(const Draft& draft, Flaws& flaws) const {
     for (const FlawPlace& place : flaws.places)
         if (place.size > 0.0) is_looked_at[place.patch] = 0;
     if (std::all_of(is_looked_at.begin(), is_looked_at.end(), [](std::uint8_t b) { return b == 0; })) return;
-    const EdgeCrossings crossings = crossings_of(draft.network, draft.graph);
+    const DiskTest is_disk(draft.network, draft.graph);
     for (const auto& face : draft.faces) {
         const Index p = patch_beside(draft.graph, draft.network, face.front());
-        if (p == no_index || is_looked_at[p] == 0 || is_disk(draft.network, draft.graph, face, crossings)) continue;
+        if (p == no_index || is_looked_at[p] == 0 || is_disk(face)) continue;
         FlawPlace place{p, {}, 0.0};
         for (const Index h : face) {
             place.nodes.push_back(draft.graph.tail(h));

@@ -62,7 +62,7 @@ public:
         return std::all_of(touched.begin(), touched.end(), [&](Index f) { return trace_cells(f); }) && flood();
     }
     /// Whether the region has something of the graph inside, away from the rim.
-    bool holds_more(const EdgeCrossings& crossings) const {
+    bool holds_more(const std::unordered_map<Index, std::vector<double>>& crossings) const {
         const auto is_passed = [&](const Part& part) {
             if (rim_parts_.contains(part)) return false;
             if (mesh_.is_feature(part.first)) return true;
@@ -516,27 +516,24 @@ std::optional<RegionPatch> cut_surface(const Network& network, const Graph& grap
     return cutter.finish();
 }
 
-EdgeCrossings crossings_of(const Network& network, const Graph& graph) {
-    EdgeCrossings crossings;
+DiskTest::DiskTest(const Network& network, const Graph& graph) : network_(network), graph_(graph) {
+    names_.vertices.resize(graph.nodes.size());
+    std::iota(names_.vertices.begin(), names_.vertices.end(), Index{0});
+    names_.is_merged.assign(graph.nodes.size(), 0);
+    names_.is_minor.assign(network.mesh().edge_halfedges.size(), 0);
     for (const GraphEdge& e : graph.edges) {
         if (!e.alive() || e.line == no_index) continue;
         const Line& line = network.lines()[e.line];
         for (double k = std::floor(e.from) + 1.0; k < e.to; k += 1.0) {
             const Crossing& c = network.crossing(line.crossings[static_cast<std::size_t>(k) % line.crossings.size()]);
-            if (c.vertex == no_index) crossings[c.edge].push_back(c.t);
+            if (c.vertex == no_index) crossings_[c.edge].push_back(c.t);
         }
     }
-    return crossings;
 }
 
-bool is_disk(const Network& network, const Graph& graph, std::span<const Index> rim, const EdgeCrossings& crossings) {
-    CutNames names;
-    names.vertices.resize(graph.nodes.size());
-    std::iota(names.vertices.begin(), names.vertices.end(), Index{0});
-    names.is_merged.assign(graph.nodes.size(), 0);
-    names.is_minor.assign(network.mesh().edge_halfedges.size(), 0);
-    SurfaceCutter cutter(network, graph, names);
-    return cutter.add_rim(rim) && !cutter.holds_more(crossings) && characteristic_of(cutter.finish()) == 1;
+bool DiskTest::operator()(std::span<const Index> rim) const {
+    SurfaceCutter cutter(network_, graph_, names_);
+    return cutter.add_rim(rim) && !cutter.holds_more(crossings_) && characteristic_of(cutter.finish()) == 1;
 }
 
 }  // namespace certa::remeshing

@@ -16,11 +16,19 @@ namespace certa::remeshing {
 std::optional<RegionPatch> cut_surface(const Network& network, const Graph& graph, std::span<const Index> rim,
                                        std::span<const Index> whole, const CutNames& names);
 
-/// Where lines of a graph pass edges of the work mesh, per edge.
-using EdgeCrossings = std::unordered_map<Index, std::vector<double>>;
-EdgeCrossings crossings_of(const Network& network, const Graph& graph);
+/// Tells rims of disks from others.
+class DiskTest {
+public:
+    DiskTest(const Network& network, const Graph& graph);
+    /// Whether a face of the graph, which passes no node twice, is a disk with this rim: nothing else of the graph lies
+    /// inside, and its characteristic is 1.
+    bool operator()(std::span<const Index> rim) const;
 
-/// Whether a face of the graph, which passes no node twice, is a disk with this rim.
-bool is_disk(const Network& network, const Graph& graph, std::span<const Index> rim, const EdgeCrossings& crossings);
+private:
+    const Network& network_;
+    const Graph& graph_;
+    CutNames names_;
+    std::unordered_map<Index, std::vector<double>> crossings_;  ///< of lines of the graph, per edge of the work mesh
+};
 
 }  // namespace certa::remeshing

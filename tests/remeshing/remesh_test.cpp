@@ -246,8 +246,8 @@ TEST(Arrangement, FacesThatAreNoDisksAreFound) {
     simplify_graph(whole, network);
     const auto faces = whole.trace_faces(p.mesh);
     EXPECT_TRUE(find_flaws(whole, network, faces).empty());
-    const EdgeCrossings crossings = crossings_of(network, whole);
-    for (const auto& face : faces) EXPECT_TRUE(is_disk(network, whole, face, crossings));
+    const DiskTest is_disk(network, whole);
+    for (const auto& face : faces) EXPECT_TRUE(is_disk(face));
     std::size_t sides = 0;
     for (const auto& face : faces) sides += face.size();
     std::size_t edges = 0;
@@ -283,11 +283,10 @@ TEST(Arrangement, IslandsAreFound) {
         EXPECT_LT(flaws.places[i].size, 3.0);
     }
     // Each by itself, a rim tells whether it is that of a disk.
-    const EdgeCrossings crossings = crossings_of(network, graph);
+    const DiskTest is_disk(network, graph);
     for (const auto& face : faces) {
         const Index patch = patch_beside(graph, network, face.front());
-        EXPECT_NE(is_disk(network, graph, face, crossings),
-                  std::find(flaws.patches.begin(), flaws.patches.end(), patch) != flaws.patches.end());
+        EXPECT_NE(is_disk(face), std::find(flaws.patches.begin(), flaws.patches.end(), patch) != flaws.patches.end());
     }
 }
 
