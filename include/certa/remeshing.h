@@ -85,6 +85,10 @@ struct RemeshStatistics {
     int umbilic_half_turns = 0;                ///< sum of all indices times two
     std::size_t isotropic_samples = 0;         ///< vertices that polygons are triangulated around
     std::size_t lines_min = 0, lines_max = 0, closed_lines = 0;
+    /// How far vertices of the input are, at most, from the nearest line, or crease along the lines, of a family that
+    /// is wanted there, in spacings; and those, per family and sector between creases, that have none within 1.3.
+    double widest_gap = 0.0;
+    std::size_t uncovered = 0;
     double spacing_error = 0.0;  ///< epsilon of the spacing of lines, as resolved
     double smoothing = 0.0;      ///< smoothing length, as resolved
     std::size_t rounds = 0;      ///< networks that were traced to meet what was asked for

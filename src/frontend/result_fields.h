@@ -72,6 +72,8 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("lines_min", s.lines_min);
     put("lines_max", s.lines_max);
     put("closed_lines", s.closed_lines);
+    put("widest_gap", s.widest_gap);
+    put("uncovered", s.uncovered);
     put("spacing_error", s.spacing_error);
     put("smoothing", s.smoothing);
     put("rounds", s.rounds);

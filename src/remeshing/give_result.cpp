@@ -72,6 +72,11 @@ void give_lines(const Network& network, const DirectionField& field, const WorkM
         for (const Index c : line.crossings) out.points.push_back(network.point(c));
         result.lines.push_back(std::move(out));
     }
+    for (const Family family : {along_max, along_min}) {
+        const Coverage& coverage = network.coverage(family);
+        result.statistics.widest_gap = std::max(result.statistics.widest_gap, coverage.farthest);
+        result.statistics.uncovered += coverage.uncovered;
+    }
     for (const FieldUmbilic& u : field.umbilics)
         result.umbilics.push_back({place_of(u, mesh), mesh.face_sources[u.face], u.half_turns});
 }

@@ -3,6 +3,8 @@
 //
 // A crossing owns a number on its edge, different from those of all other crossings of that edge: their order is exact,
 // and whether two chords of a triangle cross is a comparison of such numbers. Chords of one family never cross.
+#include <array>
+
 #include "remeshing/field.h"
 
 namespace certa::remeshing {
@@ -41,6 +43,12 @@ struct PerimeterPlace {
     friend bool operator==(const PerimeterPlace&, const PerimeterPlace&) = default;
 };
 
+/// How near lines of a family, or creases along it, are to the wedges where they are wanted.
+struct Coverage {
+    double farthest = 0.0;      ///< in spacings, of those with a line near them
+    std::size_t uncovered = 0;  ///< wedges without
+};
+
 class Network {
 public:
     explicit Network(const WorkMesh& mesh)
@@ -49,6 +57,8 @@ public:
     const WorkMesh& mesh() const { return mesh_; }
     const std::vector<Line>& lines() const { return lines_; }
     std::vector<Line>& lines() { return lines_; }
+    const Coverage& coverage(Family family) const { return coverage_[family]; }
+    Coverage& coverage(Family family) { return coverage_[family]; }
     const Crossing& crossing(Index c) const { return crossings_[c]; }
     const std::vector<Index>& on_edge(Index edge) const { return edge_lists_[edge]; }
     const Chord& chord(Index c) const { return chords_[c]; }
@@ -92,6 +102,7 @@ private:
     std::vector<Chord> chords_;
     std::vector<Index> face_heads_;
     std::vector<Line> lines_;
+    std::array<Coverage, 2> coverage_;
 };
 
 }  // namespace certa::remeshing

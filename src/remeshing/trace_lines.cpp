@@ -38,6 +38,8 @@ struct Seed {
 };
 
 class FamilyTracer {
+    static constexpr double reach = 1.3;  ///< of distances that are known, in spacings
+
 public:
     FamilyTracer(Network& network, const DirectionField& field, const Spacing& spacing, const TraceRule& rule,
                  Family family, const RunControl& control)
@@ -50,7 +52,7 @@ public:
           rule_(rule),
           family_(family),
           control_(control),
-          proximity_(mesh_, spacing_, 1.3),
+          proximity_(mesh_, spacing_, reach),
           seeded_(mesh_.edge_halfedges.size(), 0) {
         umbilic_faces_.assign(mesh_.faces.size(), false);
         for (const FieldUmbilic& u : field_.umbilics) umbilic_faces_[u.face] = true;
@@ -63,6 +65,8 @@ public:
         drain();
         fill_gaps();
     }
+    /// Of all wedges where lines are wanted: the front knows, without samples.
+    Coverage coverage() const;
     /// After both families: leads ends to the next line of the other one.
     void lengthen();
     /// Goes on from a vertex at an intrinsic angle of its wedge to the next line of the other family or feature.
@@ -276,6 +280,20 @@ void FamilyTracer::fill_gaps() {
         drain();
         if (line_number_ == before) return;
     }
+}
+
+Coverage FamilyTracer::coverage() const {
+    Coverage out;
+    for (Index w = 0; w < mesh_.wedge_count(); ++w) {
+        if (!wanted_[w]) continue;
+        const double relative = proximity_.relative(w);
+        if (relative > reach) {
+            ++out.uncovered;
+        } else {
+            out.farthest = std::max(out.farthest, relative);
+        }
+    }
+    return out;
 }
 
 bool FamilyTracer::seed_usable(const Seed& seed) const {
@@ -701,6 +719,8 @@ Network trace_lines(const WorkMesh& mesh, const DirectionField& field, const Spa
     max.lengthen();
     min.lengthen();
     extend_tips(mesh, max, min);
+    network.coverage(along_max) = max.coverage();
+    network.coverage(along_min) = min.coverage();
     return network;
 }
 

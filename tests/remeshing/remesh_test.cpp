@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "core/random.h"
+#include "core/triangle_tree.h"
 #include "facetted_pipe.h"
 #include "mesh/generators_surfaces.h"
 #include "remeshing/give_result.h"
@@ -201,6 +202,39 @@ TEST(Lines, FollowTheTorus) {
     EXPECT_LT(sum / length * 180.0 / pi, 1.5);
     EXPECT_GT(closed, 10U);
     EXPECT_TRUE(result.umbilics.empty());
+}
+
+/// What the front claims, by brute force over all lines: no vertex is farther from one of each family.
+TEST(Lines, CoverTheSurface) {
+    for (const TriangleMesh& input :
+         {generators::make_torus(2.0, 0.7, 4000, 1), generators::make_ellipsoid(2.0, 1.2, 0.8, 4000, 1),
+          graph_of(40, [](double x, double y) { return 0.5 * (x * x - y * y); })}) {
+        const Prepared p = prepare(input, 3.0);
+        SpacingRule rule;
+        rule.error = 2e-3 * p.mesh.diagonal;
+        const Spacing spacing = compute_spacing(p.mesh, p.field, rule, {});
+        const Network network = trace_lines(p.mesh, p.field, spacing, {}, {});
+        for (const Family family : {along_max, along_min}) {
+            EXPECT_EQ(network.coverage(family).uncovered, 0U);
+            EXPECT_GT(network.coverage(family).farthest, 0.3);
+            EXPECT_LT(network.coverage(family).farthest, 0.85);
+            for (Index w = 0; w < p.mesh.wedge_count(); ++w) {
+                if (!spacing.wanted[family][w]) continue;
+                const Point3& at = p.mesh.points[p.mesh.wedge_vertices[w]];
+                double square = 1e300;
+                const auto see = [&](const Point3& a, const Point3& b) {
+                    square = std::min(square, core::find_nearest_on_triangle(at, a, b, b).squared_distance);
+                };
+                for (const Line& line : network.lines())
+                    for (std::size_t k = 0; line.family == family && k < line.faces.size(); ++k)
+                        see(network.point(line.crossings[k]),
+                            network.point(line.crossings[(k + 1) % line.crossings.size()]));
+                for (Index e = 0; e < p.mesh.edge_curves.size(); ++e)
+                    if (p.mesh.edge_curves[e] != no_index) see(p.mesh.point_on(e, 0.0), p.mesh.point_on(e, 1.0));
+                ASSERT_LE(std::sqrt(square), (1.0 + 1e-9) * network.coverage(family).farthest * spacing.at[family][w]);
+            }
+        }
+    }
 }
 
 /// Lines that run exactly through vertices and along edges are the hardest to keep apart.
