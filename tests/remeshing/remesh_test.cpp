@@ -398,6 +398,44 @@ TEST(Remesh, MeetsTheCountAndIsMostlyQuads) {
     }
 }
 
+/// Equation 4.7: a quad is longer along the lesser curvature, by the root of their ratio.
+TEST(Remesh, AspectRatiosAreThoseOfTheory) {
+    constexpr double a = 2.0, b = 1.2, c = 0.8;
+    RemeshOptions options;
+    options.vertices = 800;
+    const RemeshResult result = remesh(generators::make_ellipsoid(a, b, c, 20000, 1), options);
+    ASSERT_EQ(result.outcome, Outcome::done);
+    std::vector<double> errors;
+    double sum = 0.0;
+    for (std::size_t q = 0; q + 1 < result.mesh.offsets.size(); ++q) {
+        const std::uint32_t first = result.mesh.offsets[q];
+        if (result.mesh.offsets[q + 1] - first != 4) continue;
+        const auto at = [&](std::uint32_t i) {
+            return result.mesh.positions[index_of(result.mesh.corners[first + i])];
+        };
+        const double u = distance(at(0), at(1)) + distance(at(2), at(3)),
+                     v = distance(at(1), at(2)) + distance(at(3), at(0));
+        const Point3 p = 0.25 * (at(0) + at(1) + at(2) + at(3));
+        // The ellipsoid's curvatures there.
+        const double x = p.x / (a * a), y = p.y / (b * b), z = p.z / (c * c),
+                     h = 1.0 / std::sqrt(x * x + y * y + z * z);
+        const double volume = a * a * b * b * c * c, gauss = std::pow(h, 4) / volume;
+        const double mean = std::pow(h, 3) * (a * a + b * b + c * c - dot(p, p)) / (2.0 * volume);
+        const double root = std::sqrt(std::max(0.0, mean * mean - gauss)), ratio = (mean + root) / (mean - root);
+        if (ratio < 2.0) continue;  // near umbilics it is not told which side is which
+        errors.push_back(std::log(std::max(u, v) / std::min(u, v)) - 0.5 * std::log(ratio));
+        sum += errors.back();
+    }
+    ASSERT_GT(errors.size(), 300U);
+    const double mean = std::exp(sum / static_cast<double>(errors.size()));
+    for (double& e : errors) e = std::abs(e);
+    std::sort(errors.begin(), errors.end());
+    const double median = std::exp(errors[errors.size() / 2]);
+    std::printf("%zu quads: %.3f of theory in the mean, half within %.3f\n", errors.size(), mean, median);
+    EXPECT_NEAR(mean, 1.0, 0.1);
+    EXPECT_LT(median, 1.2);
+}
+
 TEST(Remesh, ABoxIsSixFaces) {
     RemeshOptions options;
     options.output = RemeshOutput::polygons;
