@@ -1,6 +1,7 @@
 // Even cells, as long as they are as sound as the network's.
 #include "remeshing/even_out.h"
 #include "remeshing/remesher.h"
+#include "remeshing/templates.h"
 
 namespace certa::remeshing {
 
@@ -9,9 +10,16 @@ namespace certa::remeshing {
 void Remesher::even_cells(CoarseMesh& polygons) {
     constexpr int most_rounds = 6;
     CoarseMesh even = polygons;
-    even_out(mesh_, field_, best_->spacing, *tree_, even);
-    double reach = best_->reach;
+    if (options_.output == RemeshOutput::polygons) {
+        // As quads and triangles, which have a shape to be even in.
+        CoarseMesh filled = make_quad_dominant(polygons);
+        even_out(mesh_, field_, best_->spacing, *tree_, filled, control_);
+        even.points = filled.points, even.places = filled.places;
+    } else {
+        even_out(mesh_, field_, best_->spacing, *tree_, even, control_);
+    }
     for (int round = 0; round < most_rounds && !control_.cancelled(); ++round) {
+        double reach = best_->reach;
         const std::vector<Index> broken = broken_faces(*best_, even, reach);
         if (broken.size() <= best_->broken) {
             polygons = std::move(even);
@@ -34,10 +42,9 @@ void Remesher::undo_evening() {
     Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
     CoarseMesh mesh;
     const auto find_unsound = [&] {
-        mesh = recut(placed_, recuts_);
-        std::vector<Index> polygons;
+        mesh = recut(filled_, recuts_);
+        std::vector<Index> polygons = judge_input(mesh, judge).polygons;
         for (const MissedCrease& missed : missed_creases(mesh, judge)) polygons.push_back(missed.polygon);
-        for (const Index q : judge_input(mesh, judge).polygons) polygons.push_back(q);
         sort_unique(polygons);
         return polygons;
     };
@@ -49,7 +56,9 @@ void Remesher::undo_evening() {
             if (v < goes_back.size()) goes_back[v] = 1;
     for (int ring = 0; ring < rings; ++ring) mark_around(placed_, goes_back);
     const CoarseMesh& network = best_->polygons;
-    const CoarseMesh filled = filled_, placed = placed_;
+    const CoarseMesh filled = filled_, placed = placed_, judged = judged_;
+    const std::vector<double> farthest = farthest_;
+    const double rms = rms_;
     for (Index v = 0; v < network.points.size(); ++v)
         if (goes_back[v] != 0) filled_.points[v] = network.points[v], filled_.places[v] = network.places[v];
     PlacementOptions options;
@@ -58,7 +67,9 @@ void Remesher::undo_evening() {
     CoarseMesh whole = recut(filled_, recuts_);
     place(whole, options);
     take_places(whole);
-    if (find_unsound().size() >= unsound.size()) filled_ = filled, placed_ = placed;
+    if (find_unsound().size() < unsound.size()) return;
+    filled_ = filled, placed_ = placed, judged_ = judged;
+    farthest_ = farthest, rms_ = rms;
 }
 
 }  // namespace certa::remeshing

@@ -47,11 +47,20 @@ struct Curve {
 class Evening {
 public:
     Evening(const WorkMesh& surface, const DirectionField& field, const Spacing& spacing,
-            const core::TriangleTree& tree, CoarseMesh& mesh)
-        : surface_(surface), field_(field), spacing_(spacing), tree_(tree), mesh_(mesh) {
+            const core::TriangleTree& tree, CoarseMesh& mesh, const RunControl& control)
+        : surface_(surface), field_(field), spacing_(spacing), tree_(tree), mesh_(mesh), control_(control) {
         around_.resize(mesh.points.size());
         for (Index q = 0; q < mesh.polygon_count(); ++q)
             for (const Index v : mesh.polygon(q)) around_[v].push_back(q);
+        std::vector<std::array<Index, 2>> sides;
+        for (Index q = 0; q < mesh.polygon_count(); ++q) {
+            const auto ring = mesh.polygon(q);
+            for (std::size_t i = 0; i < ring.size(); ++i) sides.push_back({ring[i], ring[(i + 1) % ring.size()]});
+        }
+        std::sort(sides.begin(), sides.end());
+        is_on_rim_.assign(mesh.points.size(), 0);
+        for (const auto& [a, b] : sides)
+            if (!std::binary_search(sides.begin(), sides.end(), std::array{b, a})) is_on_rim_[a] = is_on_rim_[b] = 1;
         forms_.resize(mesh.polygon_count());
         hints_.assign(mesh.polygon_count(), no_index);
         curves_.resize(surface.curves.size());
@@ -62,10 +71,11 @@ public:
 
     void run() {
         constexpr int rounds = 20;
+        if (mesh_.polygon_count() == 0) return;
         const std::vector<Point3> points = mesh_.points;
         const std::vector<SurfacePlace> places = mesh_.places;
         const std::vector<Gap> before = find_gaps();
-        for (int round = 0; round < rounds; ++round) {
+        for (int round = 0; round < rounds && !control_.cancelled(); ++round) {
             for (Index q = 0; q < forms_.size(); ++q) find_form(q);
             for (Index v = 0; v < mesh_.points.size(); ++v) move(v);
         }
@@ -105,7 +115,7 @@ private:
         double sum = 0.0;
         for (const Gap& gap : before) sum += gap.distance * gap.distance;
         const double enough = wide * std::sqrt(sum / double(before.size()));
-        for (bool is_wider = true; is_wider;) {
+        for (bool is_wider = true; is_wider && !control_.cancelled();) {
             is_wider = false;
             const auto back = [&](Index q) {
                 for (const Index v : mesh_.polygon(q)) {
@@ -189,6 +199,7 @@ private:
         const Point3 start = mesh_.points[v];
         const VertexKind kind = mesh_.kinds[v];
         if (kind == VertexKind::corner || around_[v].empty()) return;
+        if (kind == VertexKind::smooth && is_on_rim_[v] != 0) return;
         const core::TriangleTree* curve = kind == VertexKind::smooth ? nullptr : curve_of(v);
         if (kind != VertexKind::smooth && curve == nullptr) return;
         const double before = cost_around(v);
@@ -265,6 +276,8 @@ private:
     const Spacing& spacing_;
     const core::TriangleTree& tree_;
     CoarseMesh& mesh_;
+    const RunControl& control_;
+    std::vector<std::uint8_t> is_on_rim_;             ///< per vertex: beside a side of one polygon only
     std::vector<std::vector<Index>> around_, sides_;  ///< per vertex: polygons; feature edges
     std::vector<Form> forms_;
     std::vector<Index> hints_;
@@ -274,8 +287,8 @@ private:
 }  // namespace
 
 void even_out(const WorkMesh& surface, const DirectionField& field, const Spacing& spacing,
-              const core::TriangleTree& tree, CoarseMesh& mesh) {
-    Evening(surface, field, spacing, tree, mesh).run();
+              const core::TriangleTree& tree, CoarseMesh& mesh, const RunControl& control) {
+    Evening(surface, field, spacing, tree, mesh, control).run();
 }
 
 }  // namespace certa::remeshing

@@ -1,5 +1,6 @@
 // Peaks of the distance where a count is the goal: a few polygons that no placement brings near.
 #include <algorithm>
+#include <cmath>
 
 #include "remeshing/cut_far.h"
 #include "remeshing/remesher.h"
@@ -58,6 +59,9 @@ bool Remesher::cut_last_peaks(Judge& judge, CoarseMesh& mesh) {
     if (recuts.empty()) return false;
     next = recut(next, recuts);
     if (!judge_input(next, judge).polygons.empty()) return false;
+    // Lower peaks mean that creases have to be nearer, too.
+    const double limit = crease_limit(mending_rule(0.0).creases, mesh_, judge, next, control_);
+    if (!std::isinf(limit) && !find_missed_creases(mesh_, judge, next, limit).empty()) return false;
     mesh = std::move(next);
     return true;
 }

@@ -502,7 +502,6 @@ private:
         for (const Index v : coarse.corners) mesh.corners.push_back(VertexId{v});
         return mesh;
     }
-    /// The proved distance of the result, for every way to fill its polygons.
     /// Polygons where the error is not kept.
     void add_far(const CoarseMesh& mesh, std::vector<Index>& apart) const {
         constexpr std::uint64_t pieces = 200000;

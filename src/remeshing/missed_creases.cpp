@@ -29,7 +29,8 @@ core::TriangleTree tree_of(const CoarseMesh& triangles) {
 /// Returns how far the farthest is.
 double visit_missed_creases(const WorkMesh& mesh, const Judge& judge, const CoarseMesh& result, double limit,
                             const std::function<void(const MissedCrease&)>& visit) {
-    if (mesh.minor_edges.empty() && mesh.minor_corners.empty() && mesh.curves.empty()) return 0.0;
+    const bool has_none = mesh.minor_edges.empty() && mesh.minor_corners.empty() && mesh.curves.empty();
+    if (has_none || result.polygon_count() == 0) return 0.0;
     std::vector<Triangle> edges, vertices;
     const auto id = [](Index v) { return VertexId{v}; };
     std::vector<Index> polygon_of;

@@ -1,21 +1,11 @@
 // A few rounds, judged as mending is.
 #include "remeshing/place_around.h"
 
-#include <cmath>
-
 namespace certa::remeshing {
-namespace {
 
-/// Adds polygons that miss creases by more than the check allows.
-void add_creases(const WorkMesh& surface, const Judge& judge, const CoarseMesh& mesh, std::vector<Index>& broken) {
-    const double limit = crease_limit({}, surface, judge, mesh, {});
-    if (!std::isinf(limit)) add_missed_creases(surface, judge, mesh, limit, broken);
-}
-
-}  // namespace
-
-void place_around(const WorkMesh& surface, const Judge& judge, Index first_added, const PlaceMesh& place,
-                  const std::function<std::vector<Index>(CoarseMesh&)>& find_broken, CoarseMesh& mesh) {
+void place_around(Index first_added, const PlaceMesh& place,
+                  const std::function<std::vector<Index>(CoarseMesh&)>& find_broken, CoarseMesh& mesh,
+                  const RunControl& control) {
     constexpr int most_tries = 6;
     if (2 * static_cast<std::size_t>(first_added) < mesh.points.size()) return;  // there is little to place
     PlacementOptions options;
@@ -24,10 +14,9 @@ void place_around(const WorkMesh& surface, const Judge& judge, Index first_added
     options.fixed_from = first_added;
     CoarseMesh placed = mesh;
     place(placed, options);
-    for (int round = 0; round < most_tries; ++round) {
+    for (int round = 0; round < most_tries && !control.cancelled(); ++round) {
         CoarseMesh looked_at = placed;
-        std::vector<Index> broken = find_broken(looked_at);
-        if (broken.empty()) add_creases(surface, judge, looked_at, broken);
+        const std::vector<Index> broken = find_broken(looked_at);
         if (broken.empty()) {
             mesh = std::move(looked_at);
             return;

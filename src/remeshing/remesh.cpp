@@ -308,8 +308,12 @@ void Remesher::trim(Draft& d, double wanted) {
                                             is_free, d.polygons));
             relieve_crowded(d);
         }
-        const std::vector<Index> broken = broken_faces(d, cut(d.polygons), d.reach);
-        if (broken.size() <= d.broken) break;
+        double reach = d.reach;
+        const std::vector<Index> broken = broken_faces(d, cut(d.polygons), reach);
+        if (broken.size() <= d.broken) {
+            d.reach = reach;
+            break;
+        }
         d.polygons = polygons, d.merged = merged;
         // The polygons that became these stay, and after a while those around them.
         std::vector<std::uint8_t> stays(polygons.points.size(), 0);
@@ -536,9 +540,15 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
     if (options_.placement && error == 0.0 && report.regions > 0 && report.left.empty()) {
         const auto place_all = [&] {
             place_around(
-                mesh_, judge, report.first_added,
-                [&](CoarseMesh& m, const PlacementOptions& how) { return place(m, how); },
-                [&](CoarseMesh& m) { return judge_input(m, judge).polygons; }, mesh);
+                report.first_added, [&](CoarseMesh& m, const PlacementOptions& how) { return place(m, how); },
+                [&](CoarseMesh& m) {
+                    std::vector<Index> broken = judge_input(m, judge).polygons;
+                    if (!broken.empty()) return broken;
+                    const double limit = crease_limit(mending_rule(0.0).creases, mesh_, judge, m, control_);
+                    if (!std::isinf(limit)) add_missed_creases(mesh_, judge, m, limit, broken);
+                    return broken;
+                },
+                mesh, control_);
         };
         place_all();
         if (cut_last_peaks(judge, mesh)) place_all();

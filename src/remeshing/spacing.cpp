@@ -2,7 +2,7 @@
 //
 // Lines along the direction of k_max lie d(k_min) apart and the other way round (equation 4.6), with the isotropy rho
 // mixed in as in the thesis. Curvature at a point says nothing about a whole gap where it passes through zero: spacing
-// may grow only so fast away from where it is small, which one sweep of Dijkstra over the wedges' edges sees to.
+// may grow only so fast away from where it is small, which rounds over the wedges' edges see to.
 #include "remeshing/spacing.h"
 
 #include <algorithm>

@@ -61,28 +61,8 @@ public:
         touched.erase(std::unique(touched.begin(), touched.end()), touched.end());
         return std::all_of(touched.begin(), touched.end(), [&](Index f) { return trace_cells(f); }) && flood();
     }
-    /// Whether the region has something of the graph inside, away from the rim.
-    bool holds_more(const std::unordered_map<Index, std::vector<double>>& crossings) const {
-        const auto is_passed = [&](const Part& part) {
-            if (rim_parts_.contains(part)) return false;
-            if (mesh_.is_feature(part.first)) return true;
-            const auto passing = crossings.find(mesh_.edges[part.first]);
-            if (passing == crossings.end()) return false;
-            double low = -1.0, high = 2.0;
-            if (const auto found = on_edges_.find(passing->first); found != on_edges_.end()) {
-                const auto& points = found->second;
-                if (part.second > 0) low = points[part.second - 1].first;
-                if (part.second < points.size()) high = points[part.second].first;
-            }
-            return std::any_of(passing->second.begin(), passing->second.end(),
-                               [&](double t) { return t > low && t < high; });
-        };
-        for (const Cell& cell : cells_)
-            if (cell.side == Side::inside && std::any_of(cell.parts.begin(), cell.parts.end(), is_passed)) return true;
-        return std::any_of(whole_.begin(), whole_.end(), [&](Index f) {
-            return is_passed({3 * f, 0}) || is_passed({3 * f + 1, 0}) || is_passed({3 * f + 2, 0});
-        });
-    }
+    /// From now on a rim fails that something else of the graph lies behind.
+    void refuse(const std::unordered_map<Index, std::vector<double>>& crossings) { crossings_ = &crossings; }
     void add_whole(std::span<const Index> faces) { whole_.assign(faces.begin(), faces.end()); }
 
     RegionPatch finish() {
@@ -345,6 +325,20 @@ private:
         return place.weights[1] * mesh_.local(face, 1) + place.weights[2] * mesh_.local(face, 2);
     }
 
+    /// Whether a crease or a line of the graph is there.
+    bool is_passed(const Part& part) const {
+        if (mesh_.is_feature(part.first)) return true;
+        const auto passing = crossings_->find(mesh_.edges[part.first]);
+        if (passing == crossings_->end()) return false;
+        double low = -1.0, high = 2.0;
+        if (const auto found = on_edges_.find(passing->first); found != on_edges_.end()) {
+            const auto& points = found->second;
+            if (part.second > 0) low = points[part.second - 1].first;
+            if (part.second < points.size()) high = points[part.second].first;
+        }
+        return std::any_of(passing->second.begin(), passing->second.end(),
+                           [&](double t) { return t > low && t < high; });
+    }
     bool flood() {
         std::vector<Index> cells;
         std::unordered_set<Index> seen;
@@ -352,6 +346,7 @@ private:
             if (cells_[c].side == Side::inside) cells.push_back(c);
         const auto enter = [&](const Part& part) {
             if (rim_parts_.contains(part)) return true;
+            if (crossings_ != nullptr && is_passed(part)) return false;
             const Index h = mesh_.opposites[part.first];
             if (h == no_index) return true;
             if (!cut_faces_.contains(h / 3)) {
@@ -484,6 +479,7 @@ private:
     const WorkMesh& mesh_;
     const Graph& graph_;
     const CutNames& names_;
+    const std::unordered_map<Index, std::vector<double>>* crossings_ = nullptr;  ///< of lines, where none may be inside
 
     std::unordered_map<std::uint64_t, Index> numbers_;
     std::vector<RegionVertex> points_;
@@ -533,7 +529,8 @@ DiskTest::DiskTest(const Network& network, const Graph& graph) : network_(networ
 
 bool DiskTest::operator()(std::span<const Index> rim) const {
     SurfaceCutter cutter(network_, graph_, names_);
-    return cutter.add_rim(rim) && !cutter.holds_more(crossings_) && characteristic_of(cutter.finish()) == 1;
+    cutter.refuse(crossings_);
+    return cutter.add_rim(rim) && characteristic_of(cutter.finish()) == 1;
 }
 
 }  // namespace certa::remeshing

@@ -79,7 +79,7 @@ TEST(EvenOut, StraightensZigzags) {
     torus.put(grid);
     const double before = torus.rms(mesh), best = torus.rms(grid);
     EXPECT_GT(before, 1.15 * best);
-    even_out(torus.mesh, torus.field, torus.spacing, *torus.tree, mesh);
+    even_out(torus.mesh, torus.field, torus.spacing, *torus.tree, mesh, {});
     std::printf("%.3f of the regular grid's error, %.3f before\n", torus.rms(mesh) / best, before / best);
     EXPECT_LT(torus.rms(mesh), 1.05 * best);
     EXPECT_EQ(torus.damage(mesh), 0U);
@@ -91,6 +91,26 @@ TEST(EvenOut, StraightensZigzags) {
             at = at + weights[i] * torus.input.positions[index_of(torus.input.triangles[face][i])];
         EXPECT_LT(distance(at, mesh.points[v]), 1e-12);
     }
+}
+
+/// Where polygons are missing, what is left must not move in.
+TEST(EvenOut, WhatLiesBesideAHoleStays) {
+    const Surface torus(test::make_torus(120, 60, 1.0, 0.4));
+    CoarseMesh whole = coarse_mesh(test::make_torus(28, 18, 1.0, 0.4));
+    torus.put(whole);
+    CoarseMesh mesh = whole.without_polygons();
+    for (Index q = 5; q < whole.polygon_count(); ++q) mesh.add_polygon(whole.polygon(q));
+    const std::vector<Point3> before = mesh.points;
+    even_out(torus.mesh, torus.field, torus.spacing, *torus.tree, mesh, {});
+    std::size_t moved = 0;
+    for (Index v = 0; v < mesh.points.size(); ++v) moved += mesh.points[v] == before[v] ? 0 : 1;
+    EXPECT_GT(moved, mesh.points.size() / 2);
+    for (Index q = 0; q < 5; ++q)
+        for (const Index v : whole.polygon(q)) EXPECT_EQ(mesh.points[v], before[v]);
+    // Nothing at all: nothing to do.
+    CoarseMesh none = whole.without_polygons();
+    even_out(torus.mesh, torus.field, torus.spacing, *torus.tree, none, {});
+    EXPECT_EQ(none.points, whole.points);
 }
 
 TEST(EvenOut, CornersStayAndCurvesAreKept) {
@@ -131,7 +151,7 @@ TEST(EvenOut, CornersStayAndCurvesAreKept) {
                 if (mesh.kinds[v] == VertexKind::boundary) mesh.curves[v] = curve;
         }
     const CoarseMesh before = mesh;
-    even_out(surface.mesh, surface.field, surface.spacing, *surface.tree, mesh);
+    even_out(surface.mesh, surface.field, surface.spacing, *surface.tree, mesh, {});
     EXPECT_LT(surface.rms(mesh), 0.95 * surface.rms(before));
     EXPECT_EQ(surface.damage(mesh), 0U);
     std::size_t moved = 0;
