@@ -1,6 +1,8 @@
 // From triangles to polygons: topology, directions, features, counts, refusals, on surfaces whose answers are known.
 #include <certa/distance.h>
+#include <certa/io.h>
 #include <certa/remeshing.h>
+#include <certa/surface_check.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -434,6 +436,29 @@ TEST(Remesh, AspectRatiosAreThoseOfTheory) {
     std::printf("%zu quads: %.3f of theory in the mean, half within %.3f\n", errors.size(), mean, median);
     EXPECT_NEAR(mean, 1.0, 0.1);
     EXPECT_LT(median, 1.2);
+}
+
+/// Too flat for lines, too bent to be a flat face with a hole: the network has no polygon.
+TEST(Remesh, NearlyFlatSheetsWithAHole) {
+    for (const double height : {0.0, 5e-4, 2e-3, 1e-2}) {
+        SCOPED_TRACE(height);
+        TriangleMesh sheet = graph_of(40, [&](double x, double y) { return height * (x * x + y * y); });
+        std::erase_if(sheet.triangles, [&](const Triangle& t) {
+            return std::all_of(t.begin(), t.end(), [&](VertexId v) {
+                const Point3& p = sheet.positions[index_of(v)];
+                return std::max(std::abs(p.x), std::abs(p.y)) < 0.26;
+            });
+        });
+        for (const RemeshOutput output : {RemeshOutput::quad_dominant, RemeshOutput::polygons}) {
+            RemeshOptions options;
+            options.output = output;
+            const RemeshResult result = remesh(sheet, options);
+            ASSERT_EQ(result.outcome, Outcome::done);
+            const SurfaceCheck check = check_surface(result.mesh, make_polygon_mesh(sheet));
+            EXPECT_TRUE(check.ok());
+            EXPECT_EQ(check.mesh.boundary_loops, 2U);
+        }
+    }
 }
 
 TEST(Remesh, ABoxIsSixFaces) {
