@@ -153,7 +153,6 @@ void Remesher::meet_error() {
     double error = start_error();
     const double wanted = wanted_error();
     constexpr int most_rounds = 6;
-    const double first = error;
     std::optional<Attempt> kept;
     const auto cost_of = [](const Attempt& attempt) {
         double cost = 0.0;
@@ -186,7 +185,7 @@ void Remesher::meet_error() {
         kept.emplace(std::move(*next));
         if (3 * s.mended_triangles > kept->mesh.polygon_count()) {
             // Too far apart for the topology, whatever the error allows.
-            error = error > first ? 0.5 * first : 0.8 * error;
+            error *= 0.75;
             continue;
         }
         if (double(s.mended_triangles) + double(s.cut_faces) < 0.03 * double(kept->mesh.polygon_count())) break;
