@@ -76,7 +76,9 @@ struct RemeshStatistics {
     std::int64_t euler_characteristic = 0;
     std::size_t boundary_loops = 0, feature_edges = 0, feature_curves = 0, corners = 0;
     std::size_t merged_points = 0;  ///< that coincide with others
-    std::size_t unused_vertices = 0, degenerate_triangles = 0, flipped_triangles = 0, non_manifold_edges = 0;
+    std::size_t unused_vertices = 0, flipped_triangles = 0, non_manifold_edges = 0;
+    std::size_t degenerate_triangles = 0;  ///< that name a point twice
+    std::size_t repeated_triangles = 0;    ///< that have the corners of another, in whatever order
     std::size_t split_vertices = 0;  ///< where several sheets met in one vertex of the input
     std::size_t wedges = 0, trisectors = 0;
     std::size_t cancelled_pairs = 0;           ///< of a wedge and a trisector, closer than the spacing: smoothed away

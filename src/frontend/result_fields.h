@@ -62,6 +62,7 @@ void visit_fields(const RemeshStatistics& s, Put&& put) {
     put("corners", s.corners);
     put("unused_vertices", s.unused_vertices);
     put("degenerate_triangles", s.degenerate_triangles);
+    put("repeated_triangles", s.repeated_triangles);
     put("flipped_triangles", s.flipped_triangles);
     put("non_manifold_edges", s.non_manifold_edges);
     put("split_vertices", s.split_vertices);

@@ -7,8 +7,10 @@
 #include "remeshing/work_mesh.h"
 
 #include <algorithm>
+#include <locale>
 #include <numbers>
 #include <numeric>
+#include <sstream>
 
 #include "core/index_map.h"
 #include "core/union_find.h"
@@ -19,6 +21,17 @@ namespace {
 [[noreturn]] void refuse(DefectKind kind, ElementKind element, std::size_t index, const Point3& place,
                          const std::string& message) {
     throw InputError({{kind, {{element, static_cast<std::uint32_t>(index)}}, place, message}});
+}
+
+/// A repair: what was done to how many things, and where the first one is.
+void note_repair(RemeshStatistics& statistics, std::size_t count, const std::string& one, const std::string& many,
+                 const Point3& first) {
+    if (count == 0) return;
+    std::ostringstream note;
+    note.imbue(std::locale::classic());
+    note << count << ' ' << (count == 1 ? one : many) << ", " << (count == 1 ? "at" : "the first at") << " (" << first.x
+         << ", " << first.y << ", " << first.z << ")";
+    statistics.notes.push_back(note.str());
 }
 
 constexpr double largest_coordinate = 1e50;  // lengths to the sixth power and their inverses are numbers
@@ -94,20 +107,27 @@ void take_faces(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& o
     }
     std::vector<std::array<Index, 4>> sorted;
     sorted.reserve(mesh.triangles.size());
+    std::size_t degenerate = 0, repeated = mesh.triangles.size();  // the first ones
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         std::array<Index, 3> f{};
         for (std::size_t i = 0; i < 3; ++i) f[i] = first[index_of(mesh.triangles[t][i])];
-        if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) continue;
+        if (f[0] == f[1] || f[1] == f[2] || f[2] == f[0]) {
+            if (statistics.degenerate_triangles++ == 0) degenerate = t;
+            continue;
+        }
         std::sort(f.begin(), f.end());
         sorted.push_back({f[0], f[1], f[2], static_cast<Index>(t)});
     }
     std::sort(sorted.begin(), sorted.end());
     std::vector<Index> kept;
-    for (std::size_t i = 0; i < sorted.size(); ++i)
+    for (std::size_t i = 0; i < sorted.size(); ++i) {
         if (i == 0 || !std::equal(sorted[i].begin(), sorted[i].begin() + 3, sorted[i - 1].begin()))
             kept.push_back(sorted[i][3]);
+        else
+            repeated = std::min<std::size_t>(repeated, sorted[i][3]);
+    }
     std::sort(kept.begin(), kept.end());
-    statistics.degenerate_triangles = mesh.triangles.size() - kept.size();
+    statistics.repeated_triangles = sorted.size() - kept.size();
     if (kept.empty())
         throw InputError({{DefectKind::empty_input, {}, {}, "every triangle names a vertex twice: nothing to remesh"}});
     std::vector<Index> renamed(mesh.positions.size(), no_index);
@@ -125,11 +145,26 @@ void take_faces(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& o
         work.faces.push_back(f);
         work.face_sources.push_back(t);
     }
-    for (Index v = 0; v < first.size(); ++v) statistics.merged_points += first[v] != v ? 1 : 0;
-    statistics.unused_vertices = mesh.positions.size() - work.points.size() - statistics.merged_points;
-    if (statistics.merged_points > 0)
-        statistics.notes.push_back(std::to_string(statistics.merged_points) +
-                                   " points of the input coincide with others and were merged with them");
+    Point3 merged, unused;
+    for (Index v = 0; v < first.size(); ++v) {
+        if (first[v] != v) {
+            if (statistics.merged_points++ == 0) merged = mesh.positions[v];
+        } else if (renamed[v] == no_index) {
+            if (statistics.unused_vertices++ == 0) unused = mesh.positions[v];
+        }
+    }
+    note_repair(statistics, statistics.merged_points,
+                "point of the input coincides with another and was merged with it",
+                "points of the input coincide with others and were merged with them", merged);
+    note_repair(statistics, statistics.unused_vertices, "point of the input belongs to no triangle and was left out",
+                "points of the input belong to no triangle and were left out", unused);
+    const auto place_of = [&](std::size_t t) {
+        return t < mesh.triangles.size() ? mesh.positions[index_of(mesh.triangles[t][0])] : Point3{};
+    };
+    note_repair(statistics, statistics.degenerate_triangles, "triangle names a point twice and was left out",
+                "triangles name a point twice and were left out", place_of(degenerate));
+    note_repair(statistics, statistics.repeated_triangles, "triangle repeats another and was left out",
+                "triangles repeat others and were left out", place_of(repeated));
 }
 
 /// Half-edges sorted by their ends: groups of more than one meet in an edge.
@@ -148,23 +183,38 @@ std::vector<Group> group_halfedges(const WorkMesh& work) {
     return groups;
 }
 
-/// Two half-edges per edge are opposite; edges of more faces stay open. Returns how many of those there are.
-std::size_t pair_halfedges(WorkMesh& work) {
+std::size_t end_of_group(const std::vector<Group>& groups, std::size_t at) {
+    std::size_t end = at + 1;
+    while (end < groups.size() && groups[end].key == groups[at].key) ++end;
+    return end;
+}
+
+/// Two half-edges per edge are opposite; edges of more faces stay open.
+void pair_halfedges(WorkMesh& work) {
     const std::vector<Group> groups = group_halfedges(work);
     work.opposites.assign(groups.size(), no_index);
-    std::size_t crowded = 0;
     for (std::size_t i = 0; i < groups.size();) {
-        std::size_t end = i + 1;
-        while (end < groups.size() && groups[end].key == groups[i].key) ++end;
+        const std::size_t end = end_of_group(groups, i);
         if (end - i == 2) {
             work.opposites[groups[i].halfedge] = groups[i + 1].halfedge;
             work.opposites[groups[i + 1].halfedge] = groups[i].halfedge;
-        } else if (end - i > 2) {
-            ++crowded;
         }
         i = end;
     }
-    return crowded;
+}
+
+void count_crowded_edges(const WorkMesh& work, RemeshStatistics& statistics) {
+    const std::vector<Group> groups = group_halfedges(work);
+    Point3 first;
+    for (std::size_t i = 0; i < groups.size();) {
+        const std::size_t end = end_of_group(groups, i);
+        if (end - i > 2 && statistics.non_manifold_edges++ == 0) first = work.points[work.start_of(groups[i].halfedge)];
+        i = end;
+    }
+    note_repair(statistics, statistics.non_manifold_edges,
+                "edge belongs to more than two triangles: the surface was cut open there, and the result stitched",
+                "edges belong to more than two triangles: the surface was cut open there, and the result stitched",
+                first);
 }
 
 /// Turns faces so that neighbours agree; of each component the fewer are turned.
@@ -203,12 +253,16 @@ void orient(WorkMesh& work, RemeshStatistics& statistics) {
             for (const Index f : queue) turned[f] = 1 - turned[f];
     }
     Index last = no_index;  // pieces of one triangle follow each other
+    Point3 first;
     for (Index f = 0; f < count; ++f) {
         if (turned[f] != 1) continue;
         std::swap(work.faces[f][1], work.faces[f][2]);
-        statistics.flipped_triangles += work.face_sources[f] != last ? 1 : 0;
+        if (work.face_sources[f] == last) continue;
         last = work.face_sources[f];
+        if (statistics.flipped_triangles++ == 0) first = work.points[work.faces[f][0]];
     }
+    note_repair(statistics, statistics.flipped_triangles, "triangle was turned over to agree with those beside it",
+                "triangles were turned over to agree with those beside them", first);
 }
 
 /// One vertex per fan of faces.
@@ -216,6 +270,7 @@ void split_vertices(WorkMesh& work, RemeshStatistics& statistics) {
     const Index corners = 3 * work.face_count();
     std::vector<bool> seen(corners, false), used(work.points.size(), false);
     std::vector<Index> fan;
+    Point3 first;
     for (Index c = 0; c < corners; ++c) {
         if (seen[c]) continue;
         fan.assign(1, c);
@@ -235,12 +290,16 @@ void split_vertices(WorkMesh& work, RemeshStatistics& statistics) {
             used[v] = true;
             continue;
         }
-        ++statistics.split_vertices;
+        if (statistics.split_vertices++ == 0) first = work.points[v];
         const Index copy = static_cast<Index>(work.points.size());
         work.points.push_back(Point3(work.points[v]));
         work.point_sources.push_back(work.point_sources[v]);
         for (const Index n : fan) work.faces[n / 3][n % 3] = copy;
     }
+    if (statistics.non_manifold_edges > 0) return;  // mostly their ends
+    note_repair(statistics, statistics.split_vertices,
+                "vertex is where sheets meet in a point: it was split, and the result stitched",
+                "vertices are where sheets meet in a point: they were split, and the result stitched", first);
 }
 
 void number_edges(WorkMesh& work) {
@@ -529,7 +588,7 @@ double longest_edge(const WorkMesh& work, double count) {
 
 /// From triangles to all of it.
 void connect(WorkMesh& work, const RemeshOptions& options, RemeshStatistics& statistics) {
-    statistics.non_manifold_edges = pair_halfedges(work);
+    pair_halfedges(work);
     orient(work, statistics);
     pair_halfedges(work);
     split_vertices(work, statistics);
@@ -562,6 +621,7 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     // Needles come apart into ever more of them.
     const double most_faces = count == 0.0 ? 1e300 : 4.0 * static_cast<double>(soup.faces.size()) + 20.0 * count;
     const auto input_vertices = static_cast<Index>(mesh.positions.size());
+    count_crowded_edges(soup, statistics);
     split_long_edges(soup, longest_edge(soup, count), input_vertices, most_faces);
     const RemeshStatistics before = statistics;
     for (int round = 0;; ++round) {

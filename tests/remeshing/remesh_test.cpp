@@ -562,6 +562,31 @@ TEST(Remesh, TurnsTrianglesAlikeAndSaysSo) {
     EXPECT_EQ(result.statistics.flipped_triangles, 40U);
 }
 
+TEST(Remesh, SaysWhatItRepairs) {
+    TriangleMesh input = generators::make_torus(2.0, 0.7, 2000, 1);
+    const auto [a, b, c] = input.triangles[7];
+    const auto count = static_cast<std::uint32_t>(input.positions.size());
+    input.positions.push_back({3.0, 0.0, 2.0});  // the tip of a fin
+    input.positions.push_back({9.0, 9.0, 9.0});  // of no triangle
+    input.triangles.push_back({a, b, VertexId{count}});
+    input.triangles.push_back({c, a, b});
+    input.triangles.push_back({b, a, c});
+    input.triangles.push_back({a, a, c});
+    RemeshOptions options;
+    options.vertices = 150;
+    options.placement = false;
+    const RemeshStatistics s = remesh(input, options).statistics;
+    EXPECT_EQ(s.unused_vertices, 1U);
+    EXPECT_EQ(s.repeated_triangles, 2U);
+    EXPECT_EQ(s.degenerate_triangles, 1U);
+    EXPECT_EQ(s.non_manifold_edges, 1U);
+    for (const char* what : {"1 point of the input belongs to no triangle", "2 triangles repeat others",
+                             "1 triangle names a point twice", "1 edge belongs to more than two triangles"})
+        EXPECT_TRUE(std::any_of(s.notes.begin(), s.notes.end(), [&](const std::string& note) {
+            return note.starts_with(what);
+        })) << what;
+}
+
 TEST(Remesh, RefusesWhatItCannotDo) {
     // A strip of five triangles with a half twist.
     TriangleMesh moebius;
