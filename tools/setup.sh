@@ -1,7 +1,7 @@
 # Shared by ./demo and ./test: install what is missing, configure, build within the machine's memory.
 # Sourced by bash with `set -euo pipefail` in the root of the checkout.
 
-build_packages=(g++ cmake ninja-build git ca-certificates libcgal-dev libtbb-dev tao-pegtl-dev libmpfi-dev nlohmann-json3-dev libcli11-dev)
+build_packages=(g++ cmake ninja-build git ca-certificates libcgal-dev libeigen3-dev libtbb-dev tao-pegtl-dev libmpfi-dev nlohmann-json3-dev libcli11-dev)
 # What the Python module and its tests take beside.
 python_packages=(python3-dev python3-numpy pybind11-dev python3-pytest python3-hypothesis)
 

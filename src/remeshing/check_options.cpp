@@ -3,6 +3,9 @@
 
 #include <certa/io.h>
 
+#include <locale>
+#include <sstream>
+
 namespace certa::remeshing {
 namespace {
 
@@ -28,6 +31,15 @@ void check_options(const RemeshOptions& options) {
     if (options.max_degree != 0 && options.max_degree < 3) refuse_option("max_degree must be 3 at least, or 0");
     if (options.max_degree != 0 && options.output != RemeshOutput::polygons)
         refuse_option("max_degree is for the output polygons: others have three corners, or four");
+}
+
+void check_error(const RemeshOptions& options, double diagonal) {
+    constexpr double least = 1e-10;  // coordinates have sixteen digits, bounds cost some of them
+    if (!options.error || !(options.error->resolve(diagonal) < least * diagonal)) return;
+    std::ostringstream message;
+    message.imbue(std::locale::classic());
+    message << "an error below 1e-10 of the diagonal cannot be proved: ask for " << least * diagonal << " or more";
+    refuse_option(message.str());
 }
 
 }  // namespace certa::remeshing

@@ -1,8 +1,11 @@
-// Connection Laplacian of order two and conjugate gradients (thesis 4.1.3; remesh, stage 3).
+// Connection Laplacian of order two and its solver (thesis 4.1.3; remesh, stage 3).
 //
 // Squares of directions are compared across an edge by turning the neighbour's frame into the own one; weights are
 // cotangents, by cosine over sine. Features have one side here: a wedge's neighbours lie on its own side.
 #include "remeshing/connection.h"
+
+#include <Eigen/IterativeLinearSolvers>
+#include <Eigen/SparseCholesky>
 
 namespace certa::remeshing {
 namespace {
@@ -66,46 +69,34 @@ Laplacian build_laplacian(const WorkMesh& mesh) {
 
 void solve(const Laplacian& laplacian, const std::vector<double>& screen, const std::vector<Complex>& right,
            std::vector<Complex>& u, const RunControl& control) {
-    const std::size_t n = u.size();
-    std::vector<Complex> r(n), p(n), ap(n);
-    std::vector<double> inverse(n);
-    const auto apply = [&](const std::vector<Complex>& x, std::vector<Complex>& y) {
-        for (std::size_t i = 0; i < n; ++i) {
-            Complex sum = (laplacian.diagonal[i] + screen[i]) * x[i];
-            for (std::uint64_t k = laplacian.offsets[i]; k < laplacian.offsets[i + 1]; ++k) {
-                const Complex t = laplacian.transports[k], v = x[laplacian.columns[k]];
-                const double w = laplacian.weights[k];
-                sum -= Complex(w * (t.real() * v.real() - t.imag() * v.imag()),
-                               w * (t.real() * v.imag() + t.imag() * v.real()));
-            }
-            y[i] = sum;
-        }
-    };
-    const auto product = [&](const std::vector<Complex>& a, const std::vector<Complex>& b) {
-        double sum = 0.0;
-        for (std::size_t i = 0; i < n; ++i) sum += a[i].real() * b[i].real() + a[i].imag() * b[i].imag();
-        return sum;
-    };
-    for (std::size_t i = 0; i < n; ++i) inverse[i] = 1.0 / (laplacian.diagonal[i] + screen[i] + 1e-300);
-    apply(u, ap);
-    for (std::size_t i = 0; i < n; ++i) r[i] = right[i] - ap[i];
-    std::vector<Complex> z(n);
-    for (std::size_t i = 0; i < n; ++i) z[i] = inverse[i] * r[i];
-    p = z;
-    double rz = product(r, z);
-    double start = 0.0;
-    for (std::size_t i = 0; i < n; ++i) start += inverse[i] * std::norm(right[i]);
-    for (int round = 0; round < 2000 && rz > 1e-10 * start && !control.cancelled(); ++round) {
-        apply(p, ap);
-        const double pap = product(p, ap);
-        if (!(pap > 0.0)) break;
-        const double alpha = rz / pap;
-        for (std::size_t i = 0; i < n; ++i) u[i] += alpha * p[i], r[i] -= alpha * ap[i];
-        for (std::size_t i = 0; i < n; ++i) z[i] = inverse[i] * r[i];
-        const double next = product(r, z), beta = next / rz;
-        rz = next;
-        for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + beta * p[i];
+    using Matrix = Eigen::SparseMatrix<Complex>;
+    using Vector = Eigen::Matrix<Complex, Eigen::Dynamic, 1>;
+    constexpr double tolerance = 1e-6;
+    constexpr int iterations = 250, most_rounds = 4;
+    const auto n = static_cast<Eigen::Index>(u.size());
+    std::vector<Eigen::Triplet<Complex, Eigen::Index>> entries;
+    entries.reserve(u.size() + laplacian.columns.size());
+    for (std::size_t i = 0; i < u.size(); ++i) {
+        const auto row = static_cast<Eigen::Index>(i);
+        entries.emplace_back(row, row, laplacian.diagonal[i] + screen[i] + 1e-300);
+        for (std::uint64_t k = laplacian.offsets[i]; k < laplacian.offsets[i + 1]; ++k)
+            entries.emplace_back(row, laplacian.columns[k], -laplacian.weights[k] * laplacian.transports[k]);
     }
+    Matrix matrix(n, n);
+    matrix.setFromTriplets(entries.begin(), entries.end());
+    entries = {};
+    const Eigen::Map<const Vector> wanted(right.data(), n);
+    Eigen::Map<Vector> found(u.data(), n);
+    Eigen::ConjugateGradient<Matrix, Eigen::Lower | Eigen::Upper> gradients(matrix);
+    gradients.setTolerance(tolerance);
+    gradients.setMaxIterations(iterations);
+    for (int round = 0; round < most_rounds; ++round) {
+        if (control.cancelled()) return;
+        found = gradients.solveWithGuess(wanted, found).eval();
+        if (gradients.info() == Eigen::Success) return;
+    }
+    const Eigen::SimplicialLDLT<Matrix> exact(matrix);
+    if (exact.info() == Eigen::Success) found = exact.solve(wanted);
 }
 
 }  // namespace certa::remeshing

@@ -14,7 +14,7 @@ struct Laplacian {
 };
 
 Laplacian build_laplacian(const WorkMesh& mesh);
-/// Conjugate gradients with the diagonal as preconditioner, for (L + screen) u = right, from `u` on.
+/// (L + screen) u = right: conjugate gradients from `u` on; where needles keep those from converging, a factorization.
 void solve(const Laplacian& laplacian, const std::vector<double>& screen, const std::vector<Complex>& right,
            std::vector<Complex>& u, const RunControl& control);
 

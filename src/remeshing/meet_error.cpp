@@ -131,6 +131,8 @@ void Remesher::take_places(const CoarseMesh& mesh) {
 double Remesher::prove_distance() {
     DistanceOptions options;
     options.samples = 10000;
+    const double coarsest = options.resolution.resolve(mesh_.diagonal);
+    options.resolution = {std::min(coarsest, 0.25 * wanted_error()), false};
     const SurfaceDistance distance = measure_distance(result_.mesh, make_polygon_mesh(input_), options, control_);
     watch_.stage("certificate");
     return result_.statistics.distance_bound = distance.hausdorff_bound;
@@ -147,12 +149,31 @@ std::optional<Remesher::Attempt> Remesher::attempt_error() {
     return Attempt{std::move(*best_), std::move(mesh), result_.statistics};
 }
 
+/// Not below what makes several times as many vertices as the input has: its own triangles are fewer then.
+double Remesher::coarsest_network(double error) {
+    constexpr double times = 3.0, least = 1e-8;  // of the diagonal
+    const RemeshStatistics& s = result_.statistics;
+    const double most = times * static_cast<double>(s.input_vertices - s.merged_points - s.unused_vertices);
+    const auto expected = [&](double e) {
+        return expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(e), caps_.at(e)));
+    };
+    if (!(expected(std::max(error, least * mesh_.diagonal)) > most)) return error;
+    for (error = std::max(error, least * mesh_.diagonal); error < mesh_.diagonal; error *= 1.5)
+        if (expected(error) <= most) break;
+    return error;
+}
+
 /// Epsilon by the distances that placement leaves, then lines closer together around far polygons, then cuts; at last
 /// mending, which keeps the error by triangles of the input. The fewest faces count, triangles three times.
 void Remesher::meet_error() {
     double error = start_error();
     const double wanted = wanted_error();
     constexpr int most_rounds = 6;
+    if (const double coarse = coarsest_network(error); coarse > error) {
+        best_.emplace(draft(coarse));
+        if (!control_.cancelled()) give_input_within_error("so small an error takes more polygons than the input has");
+        return;
+    }
     std::optional<Attempt> kept;
     const auto cost_of = [](const Attempt& attempt) {
         double cost = 0.0;
@@ -194,7 +215,7 @@ void Remesher::meet_error() {
     if (kept && 2 * kept->statistics.mended_triangles < faces) return keep(std::move(*kept));
     // Mostly triangles of the input: all of them, thinned out, may be fewer.
     if (kept) best_.emplace(kept->draft);
-    give_input_within_error();
+    give_input_within_error("no network of lines will do");
     if (control_.cancelled() || !kept) return;
     const RemeshStatistics& s = result_.statistics;
     if (result_.outcome == Outcome::done && double(s.faces) + 2.0 * double(s.triangles) < cost_of(*kept)) return;
@@ -202,12 +223,12 @@ void Remesher::meet_error() {
     keep(std::move(*kept));
 }
 
-/// Nothing else has helped: triangles of the input, as few as the error allows.
-void Remesher::give_input_within_error() {
+/// Triangles of the input, as few as the error allows.
+void Remesher::give_input_within_error(const std::string& why) {
     const double wanted = wanted_error();
     for (const double part : {0.5, 0.2, 1e-4}) {
         if (control_.cancelled()) return;
-        give_input(part * wanted);
+        give_input(part * wanted, why);
         if (prove_distance() <= wanted) return;
     }
     result_.outcome = Outcome::over_budget;

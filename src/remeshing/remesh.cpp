@@ -559,7 +559,7 @@ CoarseMesh Remesher::mended(CoarseMesh mesh, double error) {
 }
 
 /// Instead of a network: the input with fewer triangles.
-void Remesher::give_input(double tolerance) {
+void Remesher::give_input(double tolerance, const std::string& why) {
     const std::size_t vertices = options_.vertices ? *options_.vertices : options_.faces ? *options_.faces / 2 : 0;
     Judge judge{input_, *tree_, mesh_.diagonal, is_embedded_.value_or(true), mesh_.is_cut_open};
     CoarseMesh mesh;
@@ -575,14 +575,15 @@ void Remesher::give_input(double tolerance) {
     result_.statistics.mended_regions = mesh_.component_count;
     result_.statistics.mended_triangles = mesh.polygon_count();
     const std::string place = best_->flaws.empty() ? "" : ", first near " + text_of(best_->flaws.front());
-    result_.statistics.notes.push_back("no network of lines will do" + place +
-                                       ": the result is made of triangles of the input, thinned out");
+    const std::string note = why + place + ": the result is made of triangles of the input, thinned out";
+    std::vector<std::string>& notes = result_.statistics.notes;
+    if (notes.empty() || notes.back() != note) notes.push_back(note);
     emit(mesh);
 }
 
 void Remesher::finish_count() {
     if (!finish()) {
-        give_input(options_.vertices || options_.faces ? mesh_.diagonal : best_->error);
+        give_input(options_.vertices || options_.faces ? mesh_.diagonal : best_->error, "no network of lines will do");
         return;
     }
     constexpr double of_mending = 0.15, enough = 0.03;  // of a result that is all mended; in logarithms of the count
@@ -660,6 +661,7 @@ void Remesher::keep(Attempt&& attempt) {
 }
 
 RemeshResult Remesher::run() {
+    check_error(options_, mesh_.diagonal);
     if (prepare()) {
         if (options_.vertices || options_.faces) {
             search(wanted_count());

@@ -93,7 +93,8 @@ private:
     };
     void meet_error();
     std::optional<Attempt> attempt_error();
-    void give_input_within_error();
+    void give_input_within_error(const std::string& why);
+    double coarsest_network(double error);
     void keep(Attempt&& attempt);
     double prove_distance();
     void refine_where_far(double error, double limit);
@@ -114,7 +115,7 @@ private:
     MendingRule mending_rule(double error) const;
     CoarseMesh mended(CoarseMesh mesh, double error);
     Damage judge_input(CoarseMesh& mesh, Judge& judge);
-    void give_input(double tolerance);
+    void give_input(double tolerance, const std::string& why);
     void finish_count();
     void emit(const CoarseMesh& mesh) {
         given_ = mesh;
