@@ -3,7 +3,7 @@
 // Plan: the surface is cut open along features, so that the curvature room measures one-sided by itself. The deviator's
 // direction becomes a complex square per wedge. Smoothing solves (L + lambda M W) u = lambda M W q with the connection
 // Laplacian of order two, q the unit direction and W a saturating confidence: strong regions do not leak into weak
-// ones. Conjugate gradients: the screen makes the system well conditioned wherever there is something to follow.
+// ones. Solved by iteration: the screen makes the system well conditioned wherever there is something to follow.
 // Umbilics are the triangles around which the directions turn; the linear zero only says where in the triangle.
 #include "remeshing/field.h"
 

@@ -3,7 +3,7 @@
 // A round: cut the polygons along the diagonals nearest to the input; for samples of the triangles find the nearest
 // points of the input, for samples of the input the nearest points of the triangles (a cap that the coarse mesh leaves
 // out shows only there). Each pair says: along the input's normal there, the coarse point, a weighted mean of three
-// vertices, should move by so much. The sum of squares is lowered by conjugate gradients over the vertices, with a weak
+// vertices, should move by so much. The sum of squares becomes least by a factorization over the vertices, with a weak
 // spring against sliding along the surface. A step is kept if the measured distances agree; else half of it is tried.
 // At the end what turned away or met something is taken back.
 // Lengths are scaled so that the input's box has diagonal 1.
@@ -11,6 +11,7 @@
 
 #include <certa/surface_check.h>
 
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -426,57 +427,48 @@ private:
         m[0] += s * n.x * n.x, m[1] += s * n.x * n.y, m[2] += s * n.x * n.z;
         m[3] += s * n.y * n.y, m[4] += s * n.y * n.z, m[5] += s * n.z * n.z;
     }
-    static Block inverse(const Block& m) {
-        const double a = m[3] * m[5] - m[4] * m[4], b = m[2] * m[4] - m[1] * m[5], c = m[1] * m[4] - m[2] * m[3];
-        const double d = m[0] * a + m[1] * b + m[2] * c;
-        if (!(std::abs(d) > 0.0)) return {};
-        const double s = 1.0 / d;
-        return {s * a,
-                s * b,
-                s * c,
-                s * (m[0] * m[5] - m[2] * m[2]),
-                s * (m[1] * m[2] - m[0] * m[4]),
-                s * (m[0] * m[3] - m[1] * m[1])};
-    }
-
-    /// What a vertex may do: nothing, slide along a line, anything.
-    Point3 constrain(std::size_t v, const Point3& p) const {
-        if (freedom_[v] == 0) return {};
-        return freedom_[v] == 1 ? dot(p, tangents_[v]) * tangents_[v] : p;
-    }
-
     /// The damped Gauss-Newton step; empty when nothing is to be done.
     std::vector<Point3> solve(double power) {
         assemble(power);
         const std::size_t n = mesh_.points.size();
-        std::vector<Point3> x(n), r(n), z(n), p(n), q(n);
-        double start = 0.0;
-        for (std::size_t v = 0; v < n; ++v) {
-            r[v] = constrain(v, right_[v]);
-            z[v] = constrain(v, times(preconditioner_[v], r[v]));
-            p[v] = z[v];
-            start += dot(r[v], z[v]);
+        std::vector<int> first(n + 1, 0);  // of a vertex's unknowns
+        for (std::size_t v = 0; v < n; ++v) first[v + 1] = first[v] + freedom_[v];
+        // What a vertex may do: nothing, slide along a line, anything.
+        const auto axis = [&](std::size_t v, int i) {
+            if (freedom_[v] == 1) return tangents_[v];
+            return Point3{i == 0 ? 1.0 : 0.0, i == 1 ? 1.0 : 0.0, i == 2 ? 1.0 : 0.0};
+        };
+        std::vector<Eigen::Triplet<double>> entries;
+        const auto add = [&](Index a, Index b, const Block& block) {
+            for (int i = 0; i < freedom_[a]; ++i)
+                for (int j = 0; j < freedom_[b]; ++j)
+                    entries.emplace_back(first[a] + i, first[b] + j, dot(axis(a, i), times(block, axis(b, j))));
+        };
+        for (Index v = 0; v < n; ++v) add(v, v, diagonal_[v]);
+        for (std::size_t t = 0; t < triangles_.size(); ++t) {
+            const auto& c = triangles_[t];
+            std::size_t slot = 0;
+            for (std::size_t i = 0; i < 3; ++i)
+                for (std::size_t j = i + 1; j < 3; ++j) {
+                    const Block& block = blocks_[t][slot++];
+                    add(std::max(c[i], c[j]), std::min(c[i], c[j]), block);  // the lower half
+                }
         }
-        if (!(start > 0.0)) return {};
-        double rz = start;
-        for (int iteration = 0; iteration < 200 && rz > 1e-8 * start; ++iteration) {
-            multiply(p, q);
-            double pq = 0.0;
-            for (std::size_t v = 0; v < n; ++v) pq += dot(p[v], q[v]);
-            if (!(pq > 0.0)) break;
-            const double alpha = rz / pq;
-            double next = 0.0;
-            for (std::size_t v = 0; v < n; ++v) {
-                x[v] = x[v] + alpha * p[v];
-                r[v] = r[v] - alpha * q[v];
-                z[v] = constrain(v, times(preconditioner_[v], r[v]));
-                next += dot(r[v], z[v]);
-            }
-            for (std::size_t v = 0; v < n; ++v) p[v] = z[v] + (next / rz) * p[v];
-            rz = next;
-        }
-        limit(x);
-        return x;
+        Eigen::SparseMatrix<double> matrix(first[n], first[n]);
+        matrix.setFromTriplets(entries.begin(), entries.end());
+        Eigen::VectorXd right(first[n]);
+        for (std::size_t v = 0; v < n; ++v)
+            for (int i = 0; i < freedom_[v]; ++i) right[first[v] + i] = dot(axis(v, i), right_[v]);
+        if (right.size() == 0 || right.isZero(0.0)) return {};
+        const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(matrix);
+        if (factors.info() != Eigen::Success) return {};
+        const Eigen::VectorXd found = factors.solve(right);
+        if (!found.allFinite()) return {};
+        std::vector<Point3> step(n);
+        for (std::size_t v = 0; v < n; ++v)
+            for (int i = 0; i < freedom_[v]; ++i) step[v] = step[v] + found[first[v] + i] * axis(v, i);
+        limit(step);
+        return step;
     }
 
     void assemble(double power) {
@@ -507,13 +499,11 @@ private:
         }
         freedom_.assign(n, 3);
         tangents_.assign(n, {});
-        preconditioner_.assign(n, {});
         for (std::size_t v = 0; v < n; ++v) {
             const Point3 normal = unit(mean_normals[v]);
             const double spring = options_.anchor * masses[v];
             for (const std::size_t i : {0u, 3u, 5u}) diagonal_[v][i] += spring + 1e-9 * masses[v] + 1e-30;
             add_outer(diagonal_[v], -spring, normal);
-            preconditioner_[v] = inverse(diagonal_[v]);
             if (is_fixed(static_cast<Index>(v))) {
                 freedom_[v] = 0;
             } else if (const Curve* curve = curve_of(static_cast<Index>(v))) {
@@ -522,21 +512,6 @@ private:
             }
         }
     }
-    void multiply(const std::vector<Point3>& p, std::vector<Point3>& q) const {
-        for (std::size_t v = 0; v < p.size(); ++v) q[v] = times(diagonal_[v], p[v]);
-        for (std::size_t t = 0; t < triangles_.size(); ++t) {
-            const auto& c = triangles_[t];
-            std::size_t slot = 0;
-            for (std::size_t i = 0; i < 3; ++i)
-                for (std::size_t j = i + 1; j < 3; ++j) {
-                    const Block& m = blocks_[t][slot++];
-                    q[c[i]] = q[c[i]] + times(m, p[c[j]]);
-                    q[c[j]] = q[c[j]] + times(m, p[c[i]]);
-                }
-        }
-        for (std::size_t v = 0; v < p.size(); ++v) q[v] = constrain(v, q[v]);
-    }
-
     /// No vertex moves farther than a quarter of its shortest side.
     void limit(std::vector<Point3>& step) const {
         std::vector<double> shortest(step.size(), 1.0);
@@ -692,7 +667,7 @@ private:
     double rms_ = 0.0, largest_ = 0.0, objective_ = 0.0;
 
     std::vector<std::array<Block, 3>> blocks_;  // of a triangle's sides 01, 02, 12
-    std::vector<Block> diagonal_, preconditioner_;
+    std::vector<Block> diagonal_;
     std::vector<Point3> right_, tangents_;
     std::vector<std::uint8_t> freedom_;
 };
