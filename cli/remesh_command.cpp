@@ -128,7 +128,8 @@ void say_result(Session& session, const RemeshStatistics& s) {
                 counted(s.quads, "quad") + " (" + std::to_string(static_cast<int>(share)) + " %)");
     if (s.mended_regions > 0)
         session.say("mended       " + counted(s.mended_regions, "region") + " by " +
-                    counted(s.mended_triangles, "triangle") + " of the input, where polygons would turn away or meet");
+                    counted(s.mended_triangles, "triangle") +
+                    " of the input, where polygons would turn away, meet or be too far");
     if (s.cut_faces > 0)
         session.say("cut          " + counted(s.cut_faces, "face") +
                     " into triangles, so that every way to fill them keeps the error");

@@ -23,8 +23,9 @@ void check_options(const RemeshOptions& options) {
         refuse_option("a surface needs four vertices and faces at least");
     if (!(options.isotropy >= 0.0 && options.isotropy <= 1.0)) refuse_option("isotropy must lie in [0, 1]");
     if (!(options.transfer >= 0.0 && options.transfer <= 2.0)) refuse_option("transfer must lie in [0, 2]");
-    if (!(options.feature_angle_radians > 0.0 && options.feature_angle_radians <= 3.1415926535897936))
-        refuse_option("feature_angle must be above 0 and at most 180 degrees");
+    constexpr double least_angle = 1.7453e-5;  // 0.001 degrees: what is flat bends by less, as coordinates are rounded
+    if (!(options.feature_angle_radians >= least_angle && options.feature_angle_radians <= 3.1415926535897936))
+        refuse_option("feature_angle must be between 0.001 and 180 degrees");
     if (options.smooth && !(options.smooth->value >= 0.0)) refuse_option("smooth must not be below 0");
     if (!options.guides.empty() && options.smoothing_method != SmoothingMethod::screened)
         refuse_option("guides need the smoothing method screened, which can hold directions fast");

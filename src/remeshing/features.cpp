@@ -1,9 +1,10 @@
 // Creases, boundary and corners (remesh, stage 1; thesis 4.1.5).
 //
 // Plan: mark boundary edges, tagged edges, and edges with a dihedral angle above the limit, also between the faces that
-// slivers lie between; forget groups of creases by
-// angle that are shorter than a few edges and touch nothing else (noise, not design); corners are where not exactly two
-// marked edges meet, or two meet at a sharp turn; chains between corners are curves, closed chains too.
+// slivers lie between; forget groups of creases by angle that are shorter than a few edges and touch nothing else
+// (noise, not design): all that on the input as it is, before edges are halved, as whoever checks the result will see
+// it. Corners are where not exactly two marked edges meet, or two meet at a sharp turn; chains between corners are
+// curves, closed chains too.
 #include <algorithm>
 #include <numbers>
 
@@ -38,26 +39,27 @@ Index face_beyond_slivers(const WorkMesh& mesh, Index h) {
     return h / 3;
 }
 
-std::vector<Mark> mark_edges(const WorkMesh& mesh, const RemeshOptions& options) {
+double length_of(const WorkMesh& mesh, Index edge) {
+    const Index h = mesh.edge_halfedges[edge];
+    return distance(mesh.points[mesh.start_of(h)], mesh.points[mesh.end_of(h)]);
+}
+
+/// By the ends' point_sources, as pieces of edges are found.
+std::uint64_t source_of(const WorkMesh& mesh, Index edge) {
+    const Index h = mesh.edge_halfedges[edge];
+    return pair_key(mesh.point_sources[mesh.start_of(h)], mesh.point_sources[mesh.end_of(h)]);
+}
+
+/// `is_sharp(edge)`: the angle at an edge of two faces makes it a crease.
+template <class IsSharp>
+std::vector<Mark> mark_edges(const WorkMesh& mesh, IsSharp&& is_sharp) {
     std::vector<Mark> marks(mesh.edge_halfedges.size(), Mark::none);
-    const double limit = std::cos(options.feature_angle_radians);
-    for (std::size_t e = 0; e < marks.size(); ++e) {
-        const Index h = mesh.edge_halfedges[e], o = mesh.opposites[h];
-        if (o == no_index) {
+    for (Index e = 0; e < marks.size(); ++e) {
+        if (mesh.opposites[mesh.edge_halfedges[e]] == no_index)
             marks[e] = Mark::boundary;
-            continue;
-        }
-        const Index a = mesh.point_sources[mesh.start_of(h)], b = mesh.point_sources[mesh.end_of(h)];
-        if (!mesh.tagged.empty() && mesh.tagged.contains(pair_key(a, b))) {
+        else if (mesh.tagged.contains(source_of(mesh, e)))
             marks[e] = Mark::tagged;
-            continue;
-        }
-        const auto is_sharp = [&](Index first, Index second) {
-            const Point3 n = normal_of(mesh, first), m = normal_of(mesh, second);
-            const double lengths = norm(n) * norm(m);
-            return lengths > 0.0 && dot(n, m) < limit * lengths;
-        };
-        if (is_sharp(h / 3, o / 3) && is_sharp(face_beyond_slivers(mesh, h), face_beyond_slivers(mesh, o)))
+        else if (is_sharp(e))
             marks[e] = Mark::angle;
     }
     return marks;
@@ -86,7 +88,7 @@ void forget_noise(const WorkMesh& mesh, std::vector<Mark>& marks, double least) 
     for (std::size_t e = 0; e < marks.size(); ++e) {
         if (marks[e] == Mark::none) continue;
         const Index group = sets.find(mesh.start_of(mesh.edge_halfedges[e]));
-        length[group] += mesh.lengths[e];
+        length[group] += length_of(mesh, static_cast<Index>(e));
         if (marks[e] != Mark::angle) held[group] = true;
     }
     for (std::size_t e = 0; e < marks.size(); ++e) {
@@ -199,11 +201,30 @@ private:
 
 }  // namespace
 
+std::unordered_set<std::uint64_t> find_sharp_edges(const WorkMesh& mesh, const RemeshOptions& options) {
+    const double limit = std::cos(options.feature_angle_radians);
+    const auto is_sharp = [&](Index first, Index second) {
+        const Point3 n = normal_of(mesh, first), m = normal_of(mesh, second);
+        const double lengths = norm(n) * norm(m);
+        return lengths > 0.0 && dot(n, m) < limit * lengths;
+    };
+    std::vector<Mark> marks = mark_edges(mesh, [&](Index e) {
+        const Index h = mesh.edge_halfedges[e], o = mesh.opposites[h];
+        return is_sharp(h / 3, o / 3) && is_sharp(face_beyond_slivers(mesh, h), face_beyond_slivers(mesh, o));
+    });
+    double total = 0.0;
+    for (Index e = 0; e < marks.size(); ++e) total += length_of(mesh, e);
+    const double mean = total / static_cast<double>(marks.size());
+    forget_noise(mesh, marks, std::min(0.03 * mesh.diagonal, 12.0 * mean));
+    std::unordered_set<std::uint64_t> sharp;
+    for (Index e = 0; e < marks.size(); ++e)
+        if (marks[e] == Mark::angle) sharp.insert(source_of(mesh, e));
+    return sharp;
+}
+
 void find_features(WorkMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics) {
-    std::vector<Mark> marks = mark_edges(mesh, options);
-    // What nobody would miss; then what no curve should follow.
-    forget_noise(mesh, marks, std::min(0.03 * mesh.diagonal, 12.0 * mesh.mean_edge));
-    const std::vector<Mark> all = marks;
+    const std::vector<Mark> all = mark_edges(mesh, [&](Index e) { return mesh.sharp.contains(source_of(mesh, e)); });
+    std::vector<Mark> marks;  // without what no curve should follow
     const std::vector<bool> all_corners = CurveBuilder(mesh, all).corners();
     const auto forget_short = [&](double longest) {
         marks = all;

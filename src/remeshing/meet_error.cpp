@@ -149,18 +149,13 @@ std::optional<Remesher::Attempt> Remesher::attempt_error() {
     return Attempt{std::move(*best_), std::move(mesh), result_.statistics};
 }
 
-/// Not below what makes several times as many vertices as the input has: its own triangles are fewer then.
-double Remesher::coarsest_network(double error) {
-    constexpr double times = 3.0, least = 1e-8;  // of the diagonal
+/// A network of several times as many vertices as the input has: the input's own triangles are fewer then.
+bool Remesher::is_finer_than_input(double error) const {
+    constexpr double times = 3.0, least = 1e-8;  // of the diagonal, lest numbers overflow
     const RemeshStatistics& s = result_.statistics;
-    const double most = times * static_cast<double>(s.input_vertices - s.merged_points - s.unused_vertices);
-    const auto expected = [&](double e) {
-        return expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(e), caps_.at(e)));
-    };
-    if (!(expected(std::max(error, least * mesh_.diagonal)) > most)) return error;
-    for (error = std::max(error, least * mesh_.diagonal); error < mesh_.diagonal; error *= 1.5)
-        if (expected(error) <= most) break;
-    return error;
+    error = std::max(error, least * mesh_.diagonal);
+    return expected_vertices(mesh_, compute_spacing(mesh_, field_, rule_of(error), caps_.at(error))) >
+           times * static_cast<double>(s.input_vertices - s.merged_points - s.unused_vertices);
 }
 
 /// Epsilon by the distances that placement leaves, then lines closer together around far polygons, then cuts; at last
@@ -169,9 +164,12 @@ void Remesher::meet_error() {
     double error = start_error();
     const double wanted = wanted_error();
     constexpr int most_rounds = 6;
-    if (const double coarse = coarsest_network(error); coarse > error) {
-        best_.emplace(draft(coarse));
-        if (!control_.cancelled()) give_input_within_error("so small an error takes more polygons than the input has");
+    const std::string too_fine = "so small an error takes more polygons than the input has";
+    if (is_finer_than_input(error)) {
+        while (error < mesh_.diagonal && is_finer_than_input(error))
+            error = std::max(1.5 * error, 1e-8 * mesh_.diagonal);
+        best_.emplace(draft(error));  // for its lines
+        if (!control_.cancelled()) give_input_within_error(too_fine);
         return;
     }
     std::optional<Attempt> kept;
@@ -182,6 +180,10 @@ void Remesher::meet_error() {
         return cost;
     };
     for (int round = 0; round < most_rounds; ++round) {
+        if (round > 0 && is_finer_than_input(error)) {
+            if (kept) break;
+            return give_input_within_error(too_fine);
+        }
         best_.emplace(draft(error));
         if (control_.cancelled()) return;
         if (!finish()) break;

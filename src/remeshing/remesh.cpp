@@ -522,7 +522,7 @@ MendingRule Remesher::mending_rule(double error) const {
     rule.reach = error;
     if (options_.subdivide > 0)
         rule.creases = {0.7, 0.7};  // subdivision lowers the distance, and with it what is allowed
-    rule.all_triangles = options_.output == RemeshOutput::triangles;
+    rule.all_triangles = options_.output == RemeshOutput::triangles || options_.max_degree == 3;
     rule.recuts = recuts_;
     rule.all_recuts = error > 0.0;
     return rule;
@@ -568,7 +568,8 @@ void Remesher::give_input(double tolerance, const std::string& why) {
         judge_input(mesh, judge);
         if (part == 1e-4 || control_.cancelled() || find_damage(judge, mesh, control_).polygons.empty()) break;
     }
-    if (options_.output != RemeshOutput::triangles && find_damage(judge, mesh, control_).polygons.empty()) {
+    const bool may_pair = options_.output != RemeshOutput::triangles && options_.max_degree != 3;
+    if (may_pair && find_damage(judge, mesh, control_).polygons.empty()) {
         CoarseMesh paired = pair_triangles(mesh, std::vector<Index>(mesh.polygon_count(), 0), 5e-3 * tolerance);
         if (find_damage(judge, paired, control_).polygons.empty()) mesh = std::move(paired);
     }

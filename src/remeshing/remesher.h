@@ -94,7 +94,7 @@ private:
     void meet_error();
     std::optional<Attempt> attempt_error();
     void give_input_within_error(const std::string& why);
-    double coarsest_network(double error);
+    bool is_finer_than_input(double error) const;
     void keep(Attempt&& attempt);
     double prove_distance();
     void refine_where_far(double error, double limit);

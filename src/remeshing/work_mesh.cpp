@@ -129,7 +129,10 @@ void take_faces(WorkMesh& work, const TriangleMesh& mesh, const RemeshOptions& o
     std::sort(kept.begin(), kept.end());
     statistics.repeated_triangles = sorted.size() - kept.size();
     if (kept.empty())
-        throw InputError({{DefectKind::empty_input, {}, {}, "every triangle names a vertex twice: nothing to remesh"}});
+        throw InputError({{DefectKind::empty_input,
+                           {},
+                           {},
+                           "no triangle has corners in three different points: nothing to remesh"}});
     std::vector<Index> renamed(mesh.positions.size(), no_index);
     for (const Index t : kept) {
         std::array<Index, 3> f{};
@@ -239,12 +242,16 @@ void orient(WorkMesh& work, RemeshStatistics& statistics) {
                     queue.push_back(o / 3);
                 } else if (turned[o / 3] != alike) {
                     const Index t = work.face_sources[f], u = work.face_sources[o / 3];
-                    throw InputError(
-                        {{DefectKind::open_facet,
-                          {{ElementKind::triangle, t}, {ElementKind::triangle, u}},
-                          work.points[work.start_of(h)],
-                          "the surface has one side only: no orientation fits triangles " + std::to_string(t + 1ULL) +
-                              " and " + std::to_string(u + 1ULL) + "; cut it open along a line"}});
+                    const Point3& place = work.points[work.start_of(h)];
+                    std::ostringstream message;
+                    message.imbue(std::locale::classic());
+                    message << "the surface has one side only: no orientation fits triangle " << t + 1ULL << " and "
+                            << (t == u ? "those around it" : "triangle " + std::to_string(u + 1ULL)) << ", at ("
+                            << place.x << ", " << place.y << ", " << place.z << "); cut it open along a line";
+                    throw InputError({{DefectKind::open_facet,
+                                       {{ElementKind::triangle, t}, {ElementKind::triangle, u}},
+                                       place,
+                                       message.str()}});
                 }
             }
         }
@@ -475,7 +482,7 @@ bool halve_edges(WorkMesh& work, Index input_vertices, const IsWanted& is_wanted
         work.points.push_back(middle);
         const Index source = input_vertices + m, sa = work.point_sources[a], sb = work.point_sources[b];
         work.point_sources.push_back(source);
-        for (auto* marked : {&work.tagged, &work.guides})
+        for (auto* marked : {&work.tagged, &work.sharp, &work.guides})
             if (marked->contains(pair_key(sa, sb))) {
                 marked->insert(pair_key(sa, source));
                 marked->insert(pair_key(source, sb));
@@ -609,6 +616,18 @@ void connect(WorkMesh& work, const RemeshOptions& options, RemeshStatistics& sta
     build_wedges(work);
 }
 
+/// Creases by angle are those of the input as it is: in halves of its triangles angles may mean less.
+void find_creases(WorkMesh& soup, const RemeshOptions& options) {
+    WorkMesh whole = soup;
+    RemeshStatistics unused;
+    pair_halfedges(whole);
+    orient(whole, unused);
+    pair_halfedges(whole);
+    number_edges(whole);
+    whole.diagonal = box_diagonal(whole);
+    soup.sharp = find_sharp_edges(whole, options);
+}
+
 WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics,
                          double count) {
     constexpr int most_rounds = 12;
@@ -622,6 +641,7 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
     const double most_faces = count == 0.0 ? 1e300 : 4.0 * static_cast<double>(soup.faces.size()) + 20.0 * count;
     const auto input_vertices = static_cast<Index>(mesh.positions.size());
     count_crowded_edges(soup, statistics);
+    find_creases(soup, options);
     split_long_edges(soup, longest_edge(soup, count), input_vertices, most_faces);
     const RemeshStatistics before = statistics;
     for (int round = 0;; ++round) {

@@ -41,6 +41,7 @@ struct WorkMesh {
     std::vector<Point3> points;
     std::vector<Index> point_sources;  ///< vertex of the input; beyond those, points that were added on long edges
     std::unordered_set<std::uint64_t> tagged;  ///< edges that are creases: keys of their ends' point_sources
+    std::unordered_set<std::uint64_t> sharp;   ///< the same for those that are creases by their angle
     std::unordered_set<std::uint64_t> guides;  ///< the same for edges that lines shall follow
     std::vector<bool> is_guide;                ///< per edge; empty where there are none
     std::vector<std::array<Index, 3>> faces;
@@ -116,6 +117,9 @@ WorkMesh build_work_mesh(const TriangleMesh& mesh, const RemeshOptions& options,
 /// Halves edges longer than `longest`, and their triangles with them, until none is left or there are more faces than
 /// `most_faces`. The surface stays as it is.
 void split_long_edges(WorkMesh& mesh, double longest, Index input_vertices, double most_faces);
+/// Edges that are creases by their angle, without short groups that are noise: keys of their ends' point_sources.
+/// Input: oriented faces with opposites and edges.
+std::unordered_set<std::uint64_t> find_sharp_edges(const WorkMesh& mesh, const RemeshOptions& options);
 /// Features by angle, boundary, and what is tagged; fills edge_curves, curves, is_corner.
 void find_features(WorkMesh& mesh, const RemeshOptions& options, RemeshStatistics& statistics);
 /// Fills wedges and intrinsic angles; needs features.

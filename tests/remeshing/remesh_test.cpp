@@ -16,6 +16,7 @@
 #include "core/triangle_tree.h"
 #include "facetted_pipe.h"
 #include "mesh/generators_surfaces.h"
+#include "remeshing/connection.h"
 #include "remeshing/give_result.h"
 #include "remeshing/polygons.h"
 #include "remeshing/surface_cut.h"
@@ -585,6 +586,106 @@ TEST(Remesh, SaysWhatItRepairs) {
         EXPECT_TRUE(std::any_of(s.notes.begin(), s.notes.end(), [&](const std::string& note) {
             return note.starts_with(what);
         })) << what;
+}
+
+/// An octahedron of which the corners are drawn out into needles.
+TriangleMesh make_needles(int rounds) {
+    TriangleMesh mesh;
+    for (int i = 0; i < 6; ++i) {
+        std::array<double, 3> p{};
+        p[static_cast<std::size_t>(i / 2)] = i % 2 == 0 ? 1.0 : -1.0;
+        mesh.positions.push_back({p[0], p[1], p[2]});
+    }
+    const auto id = [](std::size_t v) { return VertexId{static_cast<std::uint32_t>(v)}; };
+    for (std::size_t x : {0, 1})
+        for (std::size_t y : {2, 3})
+            for (std::size_t z : {4, 5}) {
+                const bool even = (x + y + z) % 2 == 0;
+                mesh.triangles.push_back({id(x), id(even ? y : z), id(even ? z : y)});
+            }
+    for (int round = 0; round < rounds; ++round) {
+        std::map<std::pair<std::uint32_t, std::uint32_t>, VertexId> middles;
+        const auto middle = [&](VertexId a, VertexId b) {
+            const auto [found, is_new] = middles.try_emplace(std::minmax(index_of(a), index_of(b)), id(0));
+            if (is_new) {
+                found->second = id(mesh.positions.size());
+                const Point3 &p = mesh.positions[index_of(a)], &q = mesh.positions[index_of(b)];
+                mesh.positions.push_back({0.5 * (p.x + q.x), 0.5 * (p.y + q.y), 0.5 * (p.z + q.z)});
+            }
+            return found->second;
+        };
+        std::vector<Triangle> finer;
+        for (const auto& [a, b, c] : mesh.triangles) {
+            const VertexId ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+            for (const Triangle& t : {Triangle{a, ab, ca}, {b, bc, ab}, {c, ca, bc}, {ab, bc, ca}}) finer.push_back(t);
+        }
+        mesh.triangles = std::move(finer);
+    }
+    for (Point3& p : mesh.positions) p = {p.x * p.x * p.x, p.y * p.y * p.y, p.z * p.z * p.z};
+    return mesh;
+}
+
+TEST(Remesh, CreasesAreThoseOfTheInputBeforeItsEdgesAreHalved) {
+    // Halves of the needles' triangles are slivers, whose normals say nothing.
+    const TriangleMesh input = make_needles(4);
+    RemeshOptions options;
+    options.error = Length{0.01, true};
+    const RemeshResult result = remesh(input, options);
+    SurfaceCheckOptions check;
+    check.error = options.error;
+    const SurfaceCheck found = check_surface(result.mesh, make_polygon_mesh(input), check);
+    EXPECT_TRUE(found.violations.empty()) << found.violations.front().message;
+    EXPECT_GT(found.creases.corners, 20U);
+}
+
+TEST(Remesh, AnErrorBelowTheInputsFacetsIsKeptByTheInput) {
+    const TriangleMesh input = generators::make_torus(2.0, 0.7, 800, 1);
+    for (const double error : {1e-4, 1e-6, 1e-9}) {
+        RemeshOptions options;
+        options.error = Length{error, true};
+        const RemeshResult result = remesh(input, options);
+        EXPECT_EQ(result.outcome, Outcome::done) << error;
+        EXPECT_LE(result.mesh.positions.size(), 2 * input.positions.size()) << error;
+        SurfaceCheckOptions check;
+        check.error = options.error;
+        const SurfaceCheck found = check_surface(result.mesh, make_polygon_mesh(input), check);
+        EXPECT_TRUE(found.violations.empty()) << found.violations.front().message;
+    }
+    RemeshOptions options;
+    options.error = Length{1e-11, true};
+    EXPECT_THROW(remesh(input, options), InputError);
+}
+
+TEST(Remesh, TrianglesAreTheLeastDegree) {
+    RemeshOptions options;
+    options.output = RemeshOutput::polygons;
+    options.max_degree = 3;
+    const RemeshResult result = remesh(generators::make_torus(2.0, 0.7, 800, 1), options);
+    EXPECT_EQ(result.statistics.quads, 0U);
+    EXPECT_EQ(result.statistics.triangles, result.statistics.faces);
+}
+
+/// A path as long as conjugate gradients would take rounds to pass it.
+TEST(Connection, SolvesWhereIterationDoesNotGetThere) {
+    constexpr std::size_t n = 20000;
+    Laplacian path;
+    path.offsets.assign(1, 0);
+    for (std::size_t i = 0; i < n; ++i) {
+        for (const std::size_t j : {i - 1, i + 1}) {
+            if (j >= n) continue;
+            path.columns.push_back(static_cast<Index>(j));
+            path.weights.push_back(1.0);
+            path.transports.push_back(std::polar(1.0, i < j ? 0.1 : -0.1));
+        }
+        path.offsets.push_back(path.columns.size());
+        path.diagonal.push_back(i == 0 || i + 1 == n ? 1.0 : 2.0);
+    }
+    std::vector<double> screen(n, 0.0);
+    std::vector<Complex> right(n), u(n);
+    screen[0] = 1.0, right[0] = 1.0;
+    solve(path, screen, right, u, {});
+    for (const std::size_t i : {std::size_t{1}, n / 2, n - 1})
+        EXPECT_LT(std::abs(u[i] - std::polar(1.0, -0.1 * static_cast<double>(i))), 1e-6) << i;
 }
 
 TEST(Remesh, RefusesWhatItCannotDo) {
