@@ -114,6 +114,40 @@ MeshDocument line_document(const RemeshResult& result) {
     return document;
 }
 
+Point3 cross(const Point3& a, const Point3& b) {
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+double square(const Point3& a) { return a.x * a.x + a.y * a.y + a.z * a.z; }
+
+/// What cutting the input's polygons into triangles means for the rest.
+void say_triangulation(Session& session, const MeshDocument& document, const TriangulatedSurface& surface) {
+    const auto& offsets = document.complex.polygon_offsets;
+    std::size_t small = 0;
+    if (document.tetrahedra.empty())
+        for (std::size_t p = 0; p + 1 < offsets.size(); ++p) small += offsets[p + 1] - offsets[p] < 3 ? 1 : 0;
+    if (small > 0) session.warn(counted(small, "polygon") + " of fewer than three corners left out");
+    const auto normal = [&](std::size_t t) {
+        const auto& [a, b, c] = surface.mesh.triangles[t];
+        const Point3 &o = surface.mesh.positions[index_of(a)], &p = surface.mesh.positions[index_of(b)],
+                     &q = surface.mesh.positions[index_of(c)];
+        return cross({p.x - o.x, p.y - o.y, p.z - o.z}, {q.x - o.x, q.y - o.y, q.z - o.z});
+    };
+    constexpr double flat = 1e-12;  // sine of the angle between two triangles, squared
+    std::size_t warped = 0;
+    std::uint32_t last = no_index;
+    for (std::size_t t = 1; t < surface.source_faces.size(); ++t) {
+        const std::uint32_t face = surface.source_faces[t];
+        if (face != surface.source_faces[t - 1] || face == last) continue;
+        const Point3 n = normal(t - 1), m = normal(t), turn = cross(n, m);
+        if (!(square(turn) > flat * square(n) * square(m))) continue;
+        last = face;
+        ++warped;
+    }
+    if (warped > 0)
+        session.warn(counted(warped, "polygon") + " of the input not planar: distances are to the triangles that " +
+                     (warped == 1 ? "it was" : "they were") + " cut into");
+}
+
 void say_result(Session& session, const RemeshStatistics& s) {
     using frontend::text_of;
     session.say("input        " + counted(s.input_vertices, "vertex", "vertices") + ", " +
@@ -182,6 +216,7 @@ ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
     const std::uint64_t corners = document.complex.corners.size() + 12 * document.tetrahedra.size();
     session.require_memory(700 * corners + 400 * document.complex.positions.size(), "remeshing this surface");
     const TriangulatedSurface surface = session.timed("triangulate", [&] { return triangulate(document); });
+    say_triangulation(session, document, surface);
     arguments.options.placement = !arguments.no_placement;
     if (!arguments.options.error && !arguments.options.vertices && !arguments.options.faces)
         arguments.options.error = default_remesh_error;

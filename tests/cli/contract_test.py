@@ -532,6 +532,15 @@ class Remesh(CommandTest):
         self.assertIn("topology", report["proved"])
         self.assertTrue(any("merged" in note for note in report["statistics"]["notes"]))
 
+    def test_what_is_left_out_or_cut_is_said(self):
+        self.write("odd.off", "OFF\n6 5 0\n0 0 0\n1 0 0\n1 1 0.2\n0 1 0\n5 5 5\n2 0 0\n"
+                              "4 0 1 2 3\n2 0 3\n3 1 5 2\n3 5 1 2\n3 1 1 2\n")
+        warnings = str(self.report(0, "remesh", "odd.off", "-o", "few.obj")["warnings"])
+        for part in ("1 polygon of fewer than three corners", "1 polygon of the input not planar",
+                     "1 point of the input belongs to no triangle", "1 triangle repeats another",
+                     "1 triangle names a point twice"):
+            self.assertIn(part, warnings)
+
     def test_creases_must_be_edges(self):
         self.write("across.txt", "1 7\n")
         self.assertIn("tagged edge 1", self.expect(3, "remesh", "cube.off", "--features", "across.txt"))
