@@ -204,7 +204,14 @@ void verify(Session& session, const RemeshArguments& arguments, const RemeshResu
 }
 
 ExitCode run_remesh(Session& session, RemeshArguments& arguments) {
-    if (arguments.output.given()) session.require_writable(arguments.output);
+    if (arguments.output.given()) {
+        session.require_writable(arguments.output);
+        const Format format = arguments.output.format ? *arguments.output.format : *format_of(arguments.output.path);
+        if ((format == Format::stl || format == Format::medit) && arguments.options.output != RemeshOutput::triangles)
+            throw UsageError("-o: " + std::string(name_of(format)) +
+                             " cannot carry this mix of polygons; add --output triangles, or write .off, .obj, .ply, "
+                             ".poly, .vtu or .msh");
+    }
     if (arguments.lines.given()) {
         session.require_writable(arguments.lines);
         const Format format = *format_of(arguments.lines.path);

@@ -79,7 +79,7 @@ struct RemeshStatistics {
     std::size_t unused_vertices = 0, flipped_triangles = 0, non_manifold_edges = 0;
     std::size_t degenerate_triangles = 0;  ///< that name a point twice
     std::size_t repeated_triangles = 0;    ///< that have the corners of another, in whatever order
-    std::size_t split_vertices = 0;  ///< where several sheets met in one vertex of the input
+    std::size_t split_vertices = 0;        ///< where several sheets met in one vertex of the input
     std::size_t wedges = 0, trisectors = 0;
     std::size_t cancelled_pairs = 0;           ///< of a wedge and a trisector, closer than the spacing: smoothed away
     std::size_t umbilics_typed_otherwise = 0;  ///< by the linear field's polynomial than by the index, which counts

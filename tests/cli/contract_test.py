@@ -532,6 +532,13 @@ class Remesh(CommandTest):
         self.assertIn("topology", report["proved"])
         self.assertTrue(any("merged" in note for note in report["statistics"]["notes"]))
 
+    @unittest.skipIf(SANITIZED, "remeshing is slow there")
+    def test_formats_of_triangles_only_are_refused_at_once(self):
+        self.write("soup.off", self.torus_soup())
+        for name in ("few.stl", "few.mesh"):
+            self.assertIn("--output triangles", self.expect(2, "remesh", "soup.off", "-o", name))
+            self.expect(0, "remesh", "soup.off", "--vertices", "120", "--output", "triangles", "-o", name)
+
     def test_what_is_left_out_or_cut_is_said(self):
         self.write("odd.off", "OFF\n6 5 0\n0 0 0\n1 0 0\n1 1 0.2\n0 1 0\n5 5 5\n2 0 0\n"
                               "4 0 1 2 3\n2 0 3\n3 1 5 2\n3 5 1 2\n3 1 1 2\n")
