@@ -3,8 +3,7 @@
 
 #include <certa/io.h>
 
-#include <locale>
-#include <sstream>
+#include "remeshing/text.h"
 
 namespace certa::remeshing {
 namespace {
@@ -37,10 +36,8 @@ void check_options(const RemeshOptions& options) {
 void check_error(const RemeshOptions& options, double diagonal) {
     constexpr double least = 1e-10;  // coordinates have sixteen digits, bounds cost some of them
     if (!options.error || !(options.error->resolve(diagonal) < least * diagonal)) return;
-    std::ostringstream message;
-    message.imbue(std::locale::classic());
-    message << "an error below 1e-10 of the diagonal cannot be proved: ask for " << least * diagonal << " or more";
-    refuse_option(message.str());
+    refuse_option("an error below 1e-10 of the diagonal cannot be proved: ask for " + text_of(least * diagonal) +
+                  " or more");
 }
 
 }  // namespace certa::remeshing

@@ -9,7 +9,6 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <numbers>
 
@@ -45,13 +44,6 @@
 
 namespace certa {
 namespace remeshing {
-
-/// The fewest digits that mean this number.
-std::string text_of(double value) {
-    std::array<char, 32> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-std::string text_of(const Point3& p) { return "(" + text_of(p.x) + ", " + text_of(p.y) + ", " + text_of(p.z) + ")"; }
 
 namespace {
 

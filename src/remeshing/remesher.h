@@ -15,13 +15,10 @@
 #include "remeshing/placement.h"
 #include "remeshing/stitch.h"
 #include "remeshing/stopwatch.h"
+#include "remeshing/text.h"
 #include "remeshing/trace_lines.h"
 
 namespace certa::remeshing {
-
-/// The fewest digits that mean this number.
-std::string text_of(double value);
-std::string text_of(const Point3& p);
 
 /// One network and what came of it.
 struct Draft {

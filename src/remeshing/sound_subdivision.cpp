@@ -16,16 +16,15 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <locale>
 #include <map>
 #include <numeric>
 #include <optional>
-#include <sstream>
 
 #include "core/vector3.h"
 #include "remeshing/missed_creases.h"
 #include "remeshing/stitch.h"
 #include "remeshing/subdivision.h"
+#include "remeshing/text.h"
 #include "remeshing/triangulate.h"
 
 namespace certa::remeshing {
@@ -370,15 +369,15 @@ void give_report(const SubdivisionReport& report, std::uint64_t rounds, RemeshSt
     statistics.held_vertices = report.held;
     statistics.coarse_faces = report.coarse;
     if (report.rounds == rounds && report.coarse == 0) return;
-    std::ostringstream note;
-    note.imbue(std::locale::classic());
-    if (report.rounds < rounds) note << report.rounds << " rounds of subdivision, not " << rounds;
-    if (report.rounds < rounds && report.coarse > 0) note << ", and ";
+    std::string note;
+    if (report.rounds < rounds)
+        note = std::to_string(report.rounds) + " rounds of subdivision, not " + std::to_string(rounds);
+    if (report.rounds < rounds && report.coarse > 0) note += ", and ";
     if (report.coarse > 0)
-        note << report.coarse << (report.coarse == 1 ? " face is" : " faces are")
-             << " not subdivided in every round: pieces would turn away, meet others or be too far, first near ("
-             << report.place.x << ", " << report.place.y << ", " << report.place.z << ")";
-    statistics.notes.push_back(note.str());
+        note += std::to_string(report.coarse) + (report.coarse == 1 ? " face is" : " faces are") +
+                " not subdivided in every round: pieces would turn away, meet others or be too far, first near " +
+                text_of(report.place);
+    statistics.notes.push_back(note);
 }
 
 CoarseMesh subdivide_soundly(const CoarseMesh& mesh, const SubdivisionRule& rule, const Judge& judge,

@@ -7,13 +7,12 @@
 #include "remeshing/work_mesh.h"
 
 #include <algorithm>
-#include <locale>
 #include <numbers>
 #include <numeric>
-#include <sstream>
 
 #include "core/index_map.h"
 #include "core/union_find.h"
+#include "remeshing/text.h"
 
 namespace certa::remeshing {
 namespace {
@@ -27,11 +26,8 @@ namespace {
 void note_repair(RemeshStatistics& statistics, std::size_t count, const std::string& one, const std::string& many,
                  const Point3& first) {
     if (count == 0) return;
-    std::ostringstream note;
-    note.imbue(std::locale::classic());
-    note << count << ' ' << (count == 1 ? one : many) << ", " << (count == 1 ? "at" : "the first at") << " (" << first.x
-         << ", " << first.y << ", " << first.z << ")";
-    statistics.notes.push_back(note.str());
+    statistics.notes.push_back(std::to_string(count) + ' ' + (count == 1 ? one : many) + ", " +
+                               (count == 1 ? "at " : "the first at ") + text_of(first));
 }
 
 constexpr double largest_coordinate = 1e50;  // lengths to the sixth power and their inverses are numbers
@@ -243,15 +239,13 @@ void orient(WorkMesh& work, RemeshStatistics& statistics) {
                 } else if (turned[o / 3] != alike) {
                     const Index t = work.face_sources[f], u = work.face_sources[o / 3];
                     const Point3& place = work.points[work.start_of(h)];
-                    std::ostringstream message;
-                    message.imbue(std::locale::classic());
-                    message << "the surface has one side only: no orientation fits triangle " << t + 1ULL << " and "
-                            << (t == u ? "those around it" : "triangle " + std::to_string(u + 1ULL)) << ", at ("
-                            << place.x << ", " << place.y << ", " << place.z << "); cut it open along a line";
-                    throw InputError({{DefectKind::open_facet,
-                                       {{ElementKind::triangle, t}, {ElementKind::triangle, u}},
-                                       place,
-                                       message.str()}});
+                    const std::string other = t == u ? "those around it" : "triangle " + std::to_string(u + 1ULL);
+                    throw InputError(
+                        {{DefectKind::open_facet,
+                          {{ElementKind::triangle, t}, {ElementKind::triangle, u}},
+                          place,
+                          "the surface has one side only: no orientation fits triangle " + std::to_string(t + 1ULL) +
+                              " and " + other + ", at " + text_of(place) + "; cut it open along a line"}});
                 }
             }
         }
